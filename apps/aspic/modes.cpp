@@ -48,7 +48,8 @@ double largest_displacement(std::span<const double> shape) {
 
 void move_to_rest(Simulation& simulation) {
   State rest = simulation.state();
-  for (size_t i = 0; i < rest.q.size(); ++i) rest.q[i] = simulation.model().mesh.rest[i / 3][static_cast<int>(i % 3)];
+  const std::vector<Vec3d>& X = simulation.model().mesh.rest;
+  for (size_t i = 0; i < rest.q.size(); ++i) rest.q[i] = i / 3 < X.size() ? X[i / 3][static_cast<int>(i % 3)] : 0;
   simulation.restore({.state = rest, .start = rest});
 }
 

@@ -57,9 +57,17 @@ std::vector<double> unit_stiffness(const TetMesh& mesh) {
 
 }  // namespace
 
+std::vector<double> ForceScales::moduli(std::span<const double> unit, const BlockSparse& H) const {
+  std::vector<double> modulus;
+  for (size_t v = 0; v < unit.size(); ++v)
+    modulus.push_back(trace(H.block[H.pattern->diagonal(static_cast<int>(v))]) / unit[v]);
+  for (const AngleRow& row : model_.angle_rows) modulus.push_back(modulus[row.vertex]);
+  return modulus;
+}
+
 void ForceScales::measure(std::span<const ActiveTerm> potential, BlockPattern& pattern, BlockSparse& H) {
   const TetMesh& mesh = model_.mesh;
-  const int own_ = own();
+  const int own_ = model_.own_vertices();
   largest_.resize(pattern.rows() / kChunkSize + 1);
   Vec3d center{};
   const double count = model_.share.sum(own_);
@@ -78,22 +86,19 @@ void ForceScales::measure(std::span<const ActiveTerm> potential, BlockPattern& p
   radius_ = model_.share.max(radius_);
   H.set_zero();
   const std::vector<double> unit = unit_stiffness(mesh);
-  std::vector<double> modulus(unit.size());
+  std::vector<double> modulus(pattern.rows());
   for (size_t k = 0; k < potential.size(); ++k) {
     // The barrier of a small gap at rest would raise the round-off floors of the whole run.
     if (&potential[k].energy() == model_.contact) continue;
     potential[k].add_hessian(rest, 1, {Definiteness::absolute}, H);
-    if (k + 1 == model_.elasticity.size())
-      for (int v = 0; v < pattern.rows(); ++v) modulus[v] = trace(H.block[pattern.diagonal(v)]) / unit[v];
+    if (k + 1 == model_.elasticity.size()) modulus = moduli(unit, H);
   }
   H.multiply(growth, product);
-  pattern.rest_modulus = unit;
-  for (int v = 0; v < pattern.rows(); ++v)
-    pattern.rest_modulus[v] = trace(H.block[pattern.diagonal(v)]) / pattern.rest_modulus[v];
+  pattern.rest_modulus = moduli(unit, H);
   growth_stiffness_ = E_.dot(growth, product);
-  for (int v = 0; v < own_; ++v) {
+  for (int v = 0; v < own(); ++v) {
     rest_stiffness_ = std::hypot(rest_stiffness_, std::sqrt(squared_norm(H.block[pattern.diagonal(v)])));
-    mass_norm_ = std::hypot(mass_norm_, std::sqrt(3.0) * model_.mass->vertex_mass()[v]);
+    mass_norm_ = std::hypot(mass_norm_, std::sqrt(3.0) * model_.mass->row_mass()[v]);
   }
   rest_stiffness_ = model_.share.norm(rest_stiffness_);
   mass_norm_ = model_.share.norm(mass_norm_);
@@ -104,9 +109,10 @@ void ForceScales::measure(std::span<const ActiveTerm> potential, BlockPattern& p
 
 void ForceScales::measure_parts(std::span<const double> modulus, const BlockSparse& H, std::span<double> growth) {
   const TetMesh& mesh = model_.mesh;
-  const int own_ = own();
+  const int own_ = model_.own_vertices();
   const Share& share = model_.share;
   part_of_ = share.is_whole() ? parts_of(mesh, modulus) : share.ranks().parts(mesh, modulus.first(own_));
+  for (const AngleRow& row : model_.angle_rows) part_of_.push_back(part_of_[row.vertex]);
   const int count = static_cast<int>(share.max(*std::max_element(part_of_.begin(), part_of_.end()))) + 1;
   if (count <= 1) return part_of_.clear();
   parts_.resize(count);
@@ -128,8 +134,11 @@ void ForceScales::measure_parts(std::span<const double> modulus, const BlockSpar
   for (int v = 0; v < own_; ++v) {
     Part& part = parts_[part_of_[v]];
     part.radius = std::max(part.radius, norm(to_center(v)));
+  }
+  for (int v = 0; v < own(); ++v) {
+    Part& part = parts_[part_of_[v]];
     part.rest_stiffness = std::hypot(part.rest_stiffness, std::sqrt(squared_norm(H.block[H.pattern->diagonal(v)])));
-    part.mass_norm = std::hypot(part.mass_norm, std::sqrt(3.0) * model_.mass->vertex_mass()[v]);
+    part.mass_norm = std::hypot(part.mass_norm, std::sqrt(3.0) * model_.mass->row_mass()[v]);
   }
   std::vector<double> product(growth.size());
   H.multiply(growth, product);

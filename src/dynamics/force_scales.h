@@ -63,7 +63,9 @@ class ForceScales : public HasParts {
     double exact = 0;                 // share of `scale` without rounding error: inertia, weight, dead loads
     double sum = 0, largest = 0;      // scratch
   };
-  // Divides the vertices into parts. `growth` is scratch.
+  // Returns the moduli of the rows, given the unit stiffness of the vertices. Rows of angles have that of a vertex.
+  std::vector<double> moduli(std::span<const double> unit, const BlockSparse& H) const;
+  // Divides the rows into parts. `growth` is scratch.
   void measure_parts(std::span<const double> modulus, const BlockSparse& H, std::span<double> growth);
   int own() const { return model_.own_rows(); }  // see Share
   double free_norm(std::span<const double> v) const;
@@ -78,7 +80,7 @@ class ForceScales : public HasParts {
   bool counts_pinned_ = false;
   double inertia_ = 1, factor_ = 1;
   std::vector<Part> parts_;   // empty: a single part
-  std::vector<int> part_of_;  // part of each vertex; empty: a single part
+  std::vector<int> part_of_;  // part of each row; empty: a single part
   // growth_inertia_: moment of inertia about the center [kg m^2].
   double growth_stiffness_ = 0, growth_inertia_ = 0, radius_ = 0;
   double rest_stiffness_ = 0, mass_norm_ = 0;  // norms of the diagonal blocks [N/m] and [kg]

@@ -19,6 +19,8 @@ BlockPattern pattern_of(const Model& model) {
   for (const auto& D : model.damping) D->add_couplings(couplings);
   BlockPattern pattern = make_pattern(model.rows(), std::move(couplings));
   pattern.rest_position = model.mesh.rest;
+  for (const AngleRow& row : model.angle_rows) pattern.rest_position.push_back(row.center);
+  pattern.angle_rows = static_cast<int>(model.angle_rows.size());
   return pattern;
 }
 

@@ -66,6 +66,7 @@ Model at_scale(const Model& model, double scale) {
   scaled.bodies = model.bodies;
   scaled.pins = model.pins;
   scaled.contact = model.contact;
+  scaled.angle_rows = model.angle_rows;
   for (size_t body = 0; body < model.elasticity.size(); ++body) {
     std::vector<MaterialParameters> parameters;
     for (const MaterialParameters& own : model.elasticity[body]->parameters()) parameters.push_back({own.lame});

@@ -70,7 +70,7 @@ void note_friction(const StepTools& tools, const ActiveTerm& term, std::span<con
   if (parts[0] >= 0) report.friction_pair = tools.model.contact->mesh().pair_name(parts);
 }
 
-int own_vertices(const StepTools& tools) { return tools.model.own_rows(); }
+int own_rows(const StepTools& tools) { return tools.model.own_rows(); }
 
 struct ObstacleWork {
   double contact = 0, friction = 0;  // [J]
@@ -105,7 +105,7 @@ double work_of_wind(const StepTools& tools, const State& end) {
 
 }  // namespace
 
-// Sums and counts of a step, over the own vertices.
+// Sums and counts of a step, over the own rows.
 struct Ledger::Works {
   LongSum inertia, gradient, damping, reaction, residual, rims;  // force . dx [J]
   double jump = 0, round_off = 0;                                // [J]
@@ -188,11 +188,11 @@ std::span<const double> Ledger::elastic_energies(const Model& model, std::span<c
 
 void Ledger::note_worst_vertex(const StepTools& tools, int part, StepReport& report) const {
   double most = 0;
-  for (int v = 0; v < own_vertices(tools); ++v) {
+  for (int v = 0; v < own_rows(tools); ++v) {
     if (tools.E.sizes().part_of(v) != part) continue;
     const Vec3d left = tools.pins.free_part(v, point(residual_, v));
     const double size = std::hypot(left[0], left[1], left[2]);
-    if (size > most) most = size, report.worst_vertex = v;
+    if (size > most) most = size, report.worst_vertex = tools.model.vertex_of_row(v);
   }
   tools.model.share.find_largest(most, report.worst_vertex);
   report.worst_residual = most;
@@ -257,7 +257,7 @@ void Ledger::add_resultants(const StepTools& tools, const State& end, const Step
     sum.force = sum.force + force;
     sum.moment = sum.moment + cross(point(end.q, vertex), force);
   };
-  const int own = own_vertices(tools);
+  const int own = model.own_vertices();
   const auto sum = [&model](Resultant& now) {
     model.share.sum(now.force.a);
     model.share.sum(now.moment.a);
@@ -302,7 +302,7 @@ Ledger::Works Ledger::works_of(const StepTools& tools, const State& end, const S
   squares_.assign(tools.E.sizes().part_count(), 0.0);
   Works works;
   LongSum* const sums[] = {&works.inertia, &works.gradient, &works.damping};
-  for (int v = 0; v < own_vertices(tools); ++v) {
+  for (int v = 0; v < own_rows(tools); ++v) {
     const Vec3d x = point(end.q, v), dx = x - point(start.q, v);
     for (int i = 3 * v; i < 3 * v + 3; ++i) {
       residual_[i] = Ma_[i] + forces.gradient[i] + forces.damping[i];

@@ -16,7 +16,7 @@ constexpr double kWorthRepeating = 0.5;  // [s]; longer runs are hardly disturbe
 // Linear tets: the smallest eigenvalue of the consistent mass matrix is at least 1/5 of the smallest lumped mass.
 double smallest_mass_eigenvalue(const MassMatrix& mass) {
   double least = INFINITY;
-  for (const double m : mass.vertex_mass())
+  for (const double m : mass.row_mass())
     if (m > 0) least = std::min(least, m);
   return mass.kind() == MassKind::lumped ? least : least / 5;
 }

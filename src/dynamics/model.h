@@ -2,11 +2,13 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "dynamics/share.h"
+#include "energy/angle_row.h"
 #include "energy/energy.h"
 #include "energy/mass.h"
 #include "energy/tet_elasticity.h"
@@ -62,10 +64,27 @@ struct Model {
   const Wind* wind = nullptr;                              // one of the damping terms; null: no wind
   // If several processes hold the model, value(), min_det_F() and the counts of its terms are those of the whole model.
   Share share;
+  // Rows of angles at the edges of shells, after those of the vertices. They are part of the state and of the energies,
+  // but not of the mesh: files, selections and pins do not contain them. A part of a model, see Share, has none.
+  std::vector<AngleRow> angle_rows;
 
-  // Rows of the state and of the Hessian, each of 3 degrees of freedom: one per vertex.
-  int rows() const { return mesh.vertex_count(); }
+  // Rows of the state and of the Hessian, each of 3 degrees of freedom: one per vertex, then the rows of angles.
+  int rows() const { return mesh.vertex_count() + static_cast<int>(angle_rows.size()); }
   int own_rows() const { return share.own(rows()); }
+  int own_vertices() const { return share.own(mesh.vertex_count()); }
+  // Returns the vertex of a row: of a row of angles, a vertex of its first edge.
+  int vertex_of_row(int row) const {
+    const int angle = row - mesh.vertex_count();
+    return angle < 0 ? row : angle_rows[angle].vertex;
+  }
+  // Returns the entries of the vertices, from a vector with those of all rows.
+  std::vector<double> of_vertices(std::span<const double> rows) const {
+    const auto first = rows.begin();
+    return {first, first + 3 * static_cast<std::ptrdiff_t>(mesh.rest.size())};
+  }
 };
+
+// Returns the masses of the rows of angles of all bodies, or of one [kg]. Those of other bodies are 0.
+std::vector<double> angle_masses(const Model& model, const BodyRange* body = nullptr);
 
 }  // namespace aspic

@@ -39,6 +39,7 @@ double growth_rate(const Model& model, const IncrementalPotential& E) {
       rest.push_back(X[axis]);
       growth.push_back(X[axis] - center[axis]);
     }
+  for (auto* v : {&rest, &growth}) v->resize(3 * static_cast<size_t>(model.rows()), 0.0);
   BlockSparse K(E.pattern());
   for (size_t k = 0; k < model.elasticity.size(); ++k)
     E.terms().potential()[k].add_hessian(rest, 1, {Definiteness::exact}, K);
@@ -65,8 +66,7 @@ int free_dimension(const Pins& pins) {
 double round_off(const Model& model, const Pins& pins, const BlockSparse& K) {
   double largest = 0;
   for (int v = 0; v < pins.rows(); ++v)
-    if (!pins.holds(v))
-      largest = std::max(largest, trace(K.block[K.pattern->diagonal(v)]) / model.mass->vertex_mass()[v]);
+    if (!pins.holds(v)) largest = std::max(largest, trace(K.block[K.pattern->diagonal(v)]) / model.mass->row_mass()[v]);
   return 16 * std::numeric_limits<double>::epsilon() * largest;
 }
 

@@ -146,7 +146,7 @@ struct Simulation::Impl {
     // A convex V decreases by at most -dV/dx (x - x at the start).
     for (const ActiveTerm& V : E->terms().loads()) V.add_gradient(start.q, 1, start_force);
     // First-order schemes give a body at rest this energy in the first step.
-    const std::span<const double> mass = model.mass->vertex_mass();
+    const std::span<const double> mass = model.mass->row_mass();
     for (size_t i = 0; i < start_force.size(); ++i)
       if (mass[i / 3] > 0) start_energy += 0.5 * options.h * options.h * start_force[i] * start_force[i] / mass[i / 3];
   }
@@ -331,6 +331,7 @@ Simulation::Simulation(Model model, State initial, SimulationOptions options) {
 }
 Simulation::Simulation(Model model, SimulationOptions options) {
   State start = at_rest(model.mesh);
+  for (auto* v : {&start.q, &start.qdot}) v->resize(3 * static_cast<size_t>(model.rows()), 0.0);
   *this = Simulation(std::move(model), std::move(start), std::move(options));
 }
 Simulation::~Simulation() = default;

@@ -40,7 +40,7 @@ std::optional<SolverConflict> find_conflict(const SimulationOptions& options);
 
 class Simulation {
  public:
-  // `initial` has 3 entries per vertex of the model. Throws InvalidInput for an unknown name in the options, for
+  // `initial` has 3 entries per row of the model. Throws InvalidInput for an unknown name in the options, for
   // options that the integrator does not support, and for an invalid model: a vertex without mass in dynamics, or
   // infinite initial energy.
   Simulation(Model model, State initial, SimulationOptions options);

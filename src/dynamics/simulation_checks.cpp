@@ -110,7 +110,7 @@ void require_finite_energy(const Model& model, std::span<const double> x) {
   for (size_t body = 0; body < model.elasticity.size(); ++body) {
     if (std::isfinite(model.elasticity[body]->value(x))) continue;
     TetFields fields;
-    fields.energy_density.resize(model.mesh.tet_count());
+    fields.energy_density.resize(model.mesh.element_count());
     fields.det_F = fields.von_mises = fields.energy_density;
     fields.cauchy.resize(6 * fields.det_F.size());
     std::fill(fields.det_F.begin(), fields.det_F.end(), 1.0);

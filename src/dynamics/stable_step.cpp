@@ -117,9 +117,14 @@ StableStep stable_step(const IncrementalPotential& E, const Model& model, const 
   pins.set_identity(K);
   PowerIteration iteration(M, C, K, pins, *solver);
   const bool is_rk4 = limit == StabilityLimit::rk4;
-  const StableStep stable = iteration.run(x.size(), 2, is_rk4);
+  const auto run = [&](double weight) {
+    StableStep found = iteration.run(x.size(), weight, is_rk4);
+    if (found.vertex >= 0) found.vertex = model.vertex_of_row(found.vertex);
+    return found;
+  };
+  const StableStep stable = run(2);
   if (!is_rk4 || E.terms().damping().empty()) return stable;
-  const StableStep fastest = iteration.run(x.size(), 0, is_rk4);
+  const StableStep fastest = run(0);
   return fastest.h < stable.h ? fastest : stable;
 }
 

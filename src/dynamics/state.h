@@ -1,4 +1,4 @@
-// Positions and velocities of all vertices at one time.
+// Positions and velocities of all vertices, and angles of shells, at one time.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -11,8 +11,10 @@ namespace aspic {
 struct TetMesh;
 
 struct State {
-  std::vector<double> q, qdot;  // positions [m] and velocities [m/s], 3 per vertex
-  double time = 0;              // [s]
+  // Positions [m] and velocities [m/s], 3 per row of the model: those of the vertices, then angles at edges times a
+  // length and their rates, see Model::angle_rows.
+  std::vector<double> q, qdot;
+  double time = 0;  // [s]
   // Internal variables of the damping terms, see InternalTerms; empty: none, or zeros at the start of a simulation.
   std::vector<double> internal = {};
 };
@@ -21,7 +23,7 @@ struct State {
 State at_rest(const TetMesh& mesh);
 
 // A 64-bit hash of positions and velocities, equal on all machines. For the bits w of all positions and then all
-// velocities, as IEEE 754 doubles in the user's order of vertices:
+// velocities, as IEEE 754 doubles in the user's order of vertices, then of the rows of angles:
 //   hash = (hash xor w) * 0x100000001b3 mod 2^64, then hash = hash xor (hash >> 32), from hash = 0xcbf29ce484222325.
 // Each step is a bijection, so states that differ in one number have different hashes.
 std::uint64_t state_hash(const State& state, const Renumbering& vertices);

@@ -42,11 +42,12 @@ class Noise {
 constexpr const char* kTouching = "touching";
 constexpr double kNegligible = 1e-12;  // stiffness of a term relative to that of the stiffest, such as slack fibres
 
-std::vector<double> near_rest(const TetMesh& mesh, double edge) {
+std::vector<double> near_rest(const Model& model, double edge) {
   Noise noise;
   std::vector<double> q;
-  for (const Vec3d& X : mesh.rest)
+  for (const Vec3d& X : model.mesh.rest)
     for (int r = 0; r < 3; ++r) q.push_back(X[r] + 0.01 * edge * noise());
+  while (q.size() < 3 * static_cast<size_t>(model.rows())) q.push_back(0.01 * edge * noise());
   return q;
 }
 
@@ -108,7 +109,7 @@ class StepCheck {
 
  private:
   std::vector<NamedState> states() {
-    std::vector<NamedState> all = {{"start", near_start()}, {"rest", near_rest(model_.mesh, edge_)}};
+    std::vector<NamedState> all = {{"start", near_start()}, {"rest", near_rest(model_, edge_)}};
     if (!is_finite(all.back().q)) all.pop_back();
     double amount = 0.15;
     for (int attempt = 0; attempt < 10; ++attempt, amount /= 2) {

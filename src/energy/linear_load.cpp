@@ -30,16 +30,16 @@ class LinearLoad : public Energy {
 
   double value(Positions x, const Context& context) const override {
     const std::span<const double> f = force(context);
-    return -parallel_sum(static_cast<int>(x.size()), [&](int first, int last) {
+    return -parallel_sum(static_cast<int>(f.size()), [&](int first, int last) {
       double sum = 0;
       for (int i = first; i < last; ++i) sum += f[i] * x[i];
       return sum;
     });
   }
 
-  void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override {
+  void add_gradient(Positions, const Context& context, double scale, std::span<double> g) const override {
     const std::span<const double> f = force(context);
-    parallel_chunks(static_cast<int>(x.size()), [&](int first, int last) {
+    parallel_chunks(static_cast<int>(f.size()), [&](int first, int last) {
       for (int i = first; i < last; ++i) g[i] -= scale * f[i];
     });
   }

@@ -22,8 +22,12 @@ std::vector<double> sheet_mass(const TetMesh& mesh, std::span<const double> dens
 
 }  // namespace
 
-MassMatrix::MassMatrix(const TetMesh& mesh, std::span<const double> density, MassKind kind)
-    : kind_(kind), lumped_(mesh.vertex_count(), 0.0), row_sums_(mesh.vertex_count(), 0.0) {
+MassMatrix::MassMatrix(const TetMesh& mesh, std::span<const double> density, MassKind kind,
+                       std::span<const double> angle_mass)
+    : kind_(kind),
+      vertices_(mesh.rest.size()),
+      lumped_(vertices_ + angle_mass.size(), 0.0),
+      row_sums_(lumped_.size(), 0.0) {
   ASPIC_CHECK(static_cast<int>(density.size()) == mesh.element_count());
   Couplings couplings;
   couplings.reserve(kind == MassKind::lumped ? 0 : (mesh.mids.empty() ? 6 : 45) * mesh.tets.size());
@@ -37,7 +41,8 @@ MassMatrix::MassMatrix(const TetMesh& mesh, std::span<const double> density, Mas
       for (int v = 0; v < u && kind == MassKind::consistent; ++v) couplings.emplace_back(nodes[u], nodes[v]);
     }
   }
-  const std::vector<double> of_sheets = sheet_mass(mesh, density);
+  std::vector<double> of_sheets = sheet_mass(mesh, density);
+  of_sheets.insert(of_sheets.end(), angle_mass.begin(), angle_mass.end());
   for (int v = 0; v < rows(); ++v) {
     lumped_[v] += of_sheets[v];
     row_sums_[v] += of_sheets[v];
@@ -80,7 +85,7 @@ void MassMatrix::store_rows(const BlockPattern& pattern, std::span<const double>
 
 double MassMatrix::total() const {
   double sum = 0;
-  for (const double m : lumped_) sum += m;
+  for (const double m : vertex_mass()) sum += m;
   return sum;
 }
 

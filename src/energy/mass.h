@@ -1,4 +1,5 @@
-// Mass matrix M of tets and sheets: one scalar per vertex pair, the same for x, y and z.
+// Mass matrix M of tets and sheets: one scalar per vertex pair, the same for x, y and z. Rows of angles follow the
+// vertices, see angle_row.h.
 #pragma once
 #include <span>
 #include <vector>
@@ -15,17 +16,20 @@ enum class MassKind {
 
 class MassMatrix {
  public:
-  // `density`: one per element [kg/m^3]. The masses of sheets are always lumped. The mesh need not outlive this.
-  MassMatrix(const TetMesh& mesh, std::span<const double> density, MassKind kind);
+  // `density`: one per element [kg/m^3]. The masses of sheets are always lumped. angle_mass: of the rows of angles
+  // [kg]. The mesh need not outlive this.
+  MassMatrix(const TetMesh& mesh, std::span<const double> density, MassKind kind,
+             std::span<const double> angle_mass = {});
 
   MassKind kind() const { return kind_; }
   // Positive shares of the mass [kg]: row sums of linear tets, scaled diagonals of quadratic ones, see TetIntegrals.
-  std::span<const double> vertex_mass() const { return lumped_; }
+  std::span<const double> vertex_mass() const { return row_mass().first(vertices_); }
+  std::span<const double> row_mass() const { return lumped_; }  // of the vertices and the rows of angles [kg]
   // Row sums of this matrix [kg], which weights are proportional to; negative at some corners of quadratic tets.
-  std::span<const double> row_sums() const { return row_sums_; }
+  std::span<const double> row_sums() const { return std::span(row_sums_).first(vertices_); }
   double total() const;  // mass of all vertices [kg]
 
-  void multiply(std::span<const double> x, std::span<double> y) const;                  // y = M x; 3 entries per vertex
+  void multiply(std::span<const double> x, std::span<double> y) const;                  // y = M x; 3 entries per row
   double squared_distance(std::span<const double> x, std::span<const double> y) const;  // (x - y)' M (x - y)
   // Returns the share of the first `count` rows in squared_distance(). The shares of all rows add up to it.
   double squared_distance(std::span<const double> x, std::span<const double> y, int count) const;
@@ -41,7 +45,8 @@ class MassMatrix {
   void store_rows(const BlockPattern& pattern, std::span<const double> lower);
 
   MassKind kind_;
-  std::vector<double> lumped_, row_sums_;
+  size_t vertices_;
+  std::vector<double> lumped_, row_sums_;  // of all rows
   // Both triangles of the symmetric matrix, row by row, columns ascending, so that products read memory in order.
   std::vector<int64_t> row_start_, lower_start_;  // lower_start_ counts only the columns up to the diagonal
   std::vector<int> column_;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
 
 #include "base/parallel.h"
 #include "energy/membrane_law.h"
@@ -15,12 +14,17 @@ class SheetElasticity : public TetElasticity {
  public:
   SheetElasticity(const TetMesh& mesh, int first, const SheetMaterial& material)
       : first_element_(mesh.tet_count() + first) {
-    const auto corners = std::span(mesh.sheet).subspan(first, material.laws.size());
+    const auto begin = mesh.sheet.begin() + first;
+    const std::vector<Triangle> corners(begin, begin + static_cast<std::ptrdiff_t>(material.laws.size()));
     const auto& X = mesh.rest;
     for (const Triangle& t : corners) triangles_.push_back(make_sheet_triangle(t, {X[t[0]], X[t[1]], X[t[2]]}));
     for (const MembraneLaw& law : material.laws) moduli_.emplace_back(law);
     membrane_ = make_membrane(triangles_, material.laws);
-    bending_ = make_hinge_bending(X, corners, material.moment, material.rest);
+    if (material.plates.empty())
+      bending_ = make_hinge_bending(X, corners, material.moment, material.rest);
+    else
+      bending_ =
+          make_mid_edge_bending({X, corners, material.plates, material.rest, material.first_angle_row, material.held});
   }
 
   std::string_view name() const override { return "elastic"; }
@@ -88,7 +92,7 @@ class SheetElasticity : public TetElasticity {
   std::vector<SheetTriangle> triangles_;
   std::vector<SheetModuli> moduli_;
   std::unique_ptr<Membrane> membrane_;
-  std::unique_ptr<HingeBending> bending_;
+  std::unique_ptr<SteadyEnergy> bending_;
 };
 
 }  // namespace

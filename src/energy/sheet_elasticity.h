@@ -5,6 +5,7 @@
 
 #include "energy/hinge_bending.h"
 #include "energy/membrane.h"
+#include "energy/mid_edge_bending.h"
 #include "energy/tet_elasticity.h"
 
 namespace aspic {
@@ -13,6 +14,10 @@ struct SheetMaterial {
   std::vector<MembraneLaw> laws;  // one per triangle
   std::vector<double> moment;     // bending stiffness of each triangle [N m]
   RestAngles rest = RestAngles::of_rest;
+  // Mid-edge bending, see MidEdgeSheet. Empty: hinges.
+  std::vector<PlateStiffness> plates = {};  // one per triangle
+  int first_angle_row = 0;
+  std::vector<char> held = {};
 };
 
 // Returns the energy of triangles [first, first + count) of mesh.sheet for a material of `count` triangles. In its

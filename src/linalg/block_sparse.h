@@ -25,6 +25,7 @@ struct BlockPattern {
   // Geometry and stiffness for the coarse spaces of multigrid; empty if unknown.
   std::vector<Vec3d> rest_position;  // rest position of each row's vertex [m]
   std::vector<double> rest_modulus;  // modulus of the material at each row's vertex [Pa], up to a common factor
+  int angle_rows = 0;                // last rows, whose entries are angles at rest_position instead of displacements
 
   int rows() const { return static_cast<int>(row_start.size()) - 1; }
   int64_t block_count() const { return static_cast<int64_t>(column.size()); }

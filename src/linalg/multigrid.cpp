@@ -12,7 +12,8 @@ namespace aspic {
 namespace {
 
 constexpr int kMaxLevels = 10;
-constexpr int kMinReduction = 2;  // minimum ratio of the rows of two levels; below it, more levels do not help
+// Minimum ratio of the functions of two levels, see function_count(); below it, more levels do not help.
+constexpr int kMinReduction = 2;
 constexpr double kRegular =
     1e-12;  // relative increase of the coarsest diagonal: the matrix of a free body without mass is singular
 constexpr double kAccurate = 0.25;  // reduction of a coarse residual that is sufficient
@@ -57,6 +58,21 @@ bool has_modulus_jump(const Graph& graph, std::span<const double> modulus) {
     for (const int w : graph.around(v))
       if (is_modulus_jump(modulus[v], modulus[w])) return true;
   return false;
+}
+
+// Returns the values of (1, X, Y, Z) at the rows. Coarse functions are displacements: they are zero at rows of angles.
+std::vector<FourValues> affine_values(const BlockPattern& pattern, std::span<const Vec3d> position) {
+  std::vector<FourValues> value;
+  for (const Vec3d& X : position) value.push_back({1, X[0], X[1], X[2]});
+  std::fill(value.end() - pattern.angle_rows, value.end(), FourValues{});
+  return value;
+}
+
+// Returns the number of coarse functions that are not zero: on a plane, the fourth of each aggregate is.
+int function_count(const AffineCoarsening& coarsening) {
+  int count = 0;
+  for (size_t row = 0; row < coarsening.coarse_value.size(); ++row) count += coarsening.coarse_value[row][row % 4] != 0;
+  return count;
 }
 
 std::vector<int> inverse_permutation(std::span<const int> order) {
@@ -113,8 +129,8 @@ void Multigrid::build(const BlockSparse& H) {
   Graph graph = graph_of(*pattern);
   std::vector<Vec3d> position = pattern->rest_position;
   position.resize(pattern->rows());  // rows without a known position move with their aggregate
-  std::vector<FourValues> value;
-  for (const Vec3d& X : position) value.push_back({1, X[0], X[1], X[2]});
+  std::vector<FourValues> value = affine_values(*pattern, position);
+  int functions = pattern->rows();
   std::vector<double> modulus = pattern->rest_modulus;
   const int first_steps = has_modulus_jump(graph, modulus) ? kSteps : kFirstSteps;
   std::span<const char> excluded = isolated_;
@@ -124,9 +140,12 @@ void Multigrid::build(const BlockSparse& H) {
     // If the modulus jumps almost everywhere, aggregates cross the jumps; on the first level only if necessary.
     const int too_many = rows_per_vertex == 4 ? graph.vertex_count() / 3 : pattern->rows() / (4 * kMinReduction);
     if (aggregates.count() > too_many) aggregates = make_aggregates({graph, position, {}, excluded, size});
-    if (aggregates.count() == 0 || 4 * kMinReduction * aggregates.count() > pattern->rows()) break;
+    AffineCoarsening coarsening = make_affine_coarsening(graph, aggregates, rows_per_vertex, value);
+    const int coarse_functions = function_count(coarsening);
+    if (coarse_functions == 0 || kMinReduction * coarse_functions > functions) break;
+    functions = coarse_functions;
     Level& level = levels_.emplace_back();
-    level.coarsening = make_affine_coarsening(graph, aggregates, rows_per_vertex, value);
+    level.coarsening = std::move(coarsening);
     const AffineCoarsening& c = level.coarsening;
     level.smoother.analyze(*pattern, rows_per_vertex, aggregates.of_vertex, greedy_coloring(c.graph));
     level.restriction.reserve(c);

@@ -14,8 +14,9 @@ class Renumbering {
   Renumbering() = default;
   explicit Renumbering(std::vector<int> user_of_stored);  // user's index of each stored element
 
-  int to_user(int stored) const { return user_.empty() ? stored : user_[stored]; }
-  int from_user(int user) const { return stored_.empty() ? user : stored_[user]; }
+  // Elements beyond those of the permutation keep their index.
+  int to_user(int stored) const { return is_beyond(stored) ? stored : user_[stored]; }
+  int from_user(int user) const { return is_beyond(user) ? user : stored_[user]; }
   std::vector<int> to_user(std::vector<int> stored) const;  // user's indices of a set, ascending
 
   // Reorders values of all elements, `components` values per element.
@@ -27,6 +28,8 @@ class Renumbering {
   void append(int count, const Renumbering& part, int more);
 
  private:
+  bool is_beyond(int element) const { return static_cast<size_t>(element) >= user_.size(); }
+
   std::vector<int> user_, stored_;  // both empty: identity
 };
 

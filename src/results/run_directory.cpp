@@ -99,7 +99,7 @@ double only_number(const Checkpoint& checkpoint, const char* name) {
 State state_of(const Checkpoint& checkpoint, const std::string& prefix, const Model& model) {
   const State state{checkpoint.array(prefix + "q"), checkpoint.array(prefix + "qdot"),
                     only_number(checkpoint, (prefix + "time").c_str())};
-  const size_t n = 3 * model.mesh.rest.size();
+  const size_t n = 3 * static_cast<size_t>(model.rows());
   for (const auto* v : {&state.q, &state.qdot})
     if (v->size() != n)
       throw InvalidInput("the checkpoint has " + std::to_string(v->size()) + " entries; this scene needs " +

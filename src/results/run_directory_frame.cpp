@@ -117,7 +117,7 @@ void add_mechanics(const Simulation& simulation, std::span<const double> cauchy,
     principal.values.insert(principal.values.end(), values.begin(), values.end());
   }
   for (Field* field : {&F, &strain, &principal}) fields.cell_fields.push_back(std::move(*field));
-  fields.point_fields.push_back({"reaction", 3, simulation.reactions(), real});
+  fields.point_fields.push_back({"reaction", 3, simulation.model().of_vertices(simulation.reactions()), real});
 }
 
 }  // namespace
@@ -127,8 +127,8 @@ VtuFields frame_fields(const Simulation& simulation, const StepReport* report, F
   const Model& model = simulation.model();
   const State& state = simulation.state();
   VtuFields fields;
-  fields.point_fields = {{"displacement", 3, displacement(model.mesh, state.q), real},
-                         {"velocity", 3, state.qdot, real}};
+  fields.point_fields = {{"displacement", 3, displacement(model.mesh, model.of_vertices(state.q)), real},
+                         {"velocity", 3, model.of_vertices(state.qdot), real}};
   TetFields tet_fields = simulation.tet_fields();
   if (!model.mesh.mids.empty())
     fields.point_fields.push_back({"pressure", 1, pressure_of_vertices(model.mesh, tet_fields.cauchy), real});
@@ -150,7 +150,7 @@ void write_frame(const std::filesystem::path& path, const Simulation& simulation
   for (Field& field : fields.point_fields) field.values = vertex.to_user(field.values, field.components);
   for (Field& field : fields.cell_fields) field.values = tet.to_user(field.values, field.components);
   const TetMesh mesh = to_user(model.numbering, model.mesh);
-  write_vtu(path, vertex.to_user(simulation.state().q, 3), mesh, fields);
+  write_vtu(path, vertex.to_user(model.of_vertices(simulation.state().q), 3), mesh, fields);
 }
 
 }  // namespace aspic

@@ -374,7 +374,8 @@ void add_damping(PlacedBody& body, size_t index, MassKind kind, SceneFiles& file
         body.mesh.sheet.empty() ? body.first_tet : model.mesh.tet_count() + body.first_triangle;
     std::copy_n(model.density.begin() + first, body.mesh.element_count(), density.begin() + first);
     model.damping.push_back(
-        make_rayleigh_damping(MassMatrix(model.mesh, density, kind), a, model.elasticity[index].get(), b));
+        make_rayleigh_damping(MassMatrix(model.mesh, density, kind, angle_masses(model, &model.bodies[index])), a,
+                              model.elasticity[index].get(), b));
   }
   if (!body.mesh.sheet.empty()) return;
   const std::vector<double> viscosity =
@@ -383,6 +384,12 @@ void add_damping(PlacedBody& body, size_t index, MassKind kind, SceneFiles& file
   if (std::any_of(viscosity.begin(), viscosity.end(), [](double eta) { return eta > 0; }))
     model.damping.push_back(
         make_strain_rate_damping(model.mesh, body.first_tet, body.numbering.tet.from_user(viscosity)));
+}
+
+Builder builder_of(const SceneActions& actions, Model& model) {
+  const double g = norm(actions.gravity);
+  const Vec3d up = g > 0 ? (-1 / g) * actions.gravity : Vec3d{{0, 1, 0}};
+  return {actions.bodies, up, model, actions.files, actions.notes, {}, {}, actions.duration};
 }
 
 }  // namespace
@@ -394,15 +401,18 @@ SelectionScope selection_scope(const PlacedBody& body, Value& where, const Vec3d
           body.whole,  &body.groups};
 }
 
-void add_actions(const SceneActions& actions, Model& model) {
-  const auto& [bodies, gravity, duration, mass, files, notes, memory] = actions;
-  const double g = norm(gravity);
-  Builder builder{bodies, g > 0 ? (-1 / g) * gravity : Vec3d{{0, 1, 0}}, model, files, notes, {}, {}, duration};
-  for (const PlacedBody& body : bodies) add_pins(builder, body);
-  add_loads(builder, gravity);
-  add_grabs(bodies, model);
-  for (size_t i = 0; i < bodies.size(); ++i) add_damping(bodies[i], i, mass, files, model);
-  add_branches(bodies, {files, memory}, model);
+void add_pins(const SceneActions& actions, Model& model) {
+  Builder builder = builder_of(actions, model);
+  for (const PlacedBody& body : actions.bodies) add_pins(builder, body);
+}
+
+void add_loads_and_damping(const SceneActions& actions, Model& model) {
+  Builder builder = builder_of(actions, model);
+  add_loads(builder, actions.gravity);
+  add_grabs(actions.bodies, model);
+  for (size_t i = 0; i < actions.bodies.size(); ++i)
+    add_damping(actions.bodies[i], i, actions.mass, actions.files, model);
+  add_branches(actions.bodies, {actions.files, actions.memory}, model);
 }
 
 }  // namespace aspic

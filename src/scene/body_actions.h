@@ -46,7 +46,9 @@ struct SceneActions {
   std::int64_t memory;              // maximum memory [bytes]
 };
 
-// Adds pins, loads and damping to a model that has its mesh, mass and elasticity. Throws InvalidInput.
-void add_actions(const SceneActions& actions, Model& model);
+// Adds pins to a model that has its mesh. Throws InvalidInput.
+void add_pins(const SceneActions& actions, Model& model);
+// Adds loads and damping to a model that also has its mass and elasticity. Throws InvalidInput.
+void add_loads_and_damping(const SceneActions& actions, Model& model);
 
 }  // namespace aspic

@@ -88,6 +88,66 @@ void check(const TriMesh& mesh, const Value& body, const Place& place) {
                               " vertices belong to no triangle; remove them (aspic check MESH --repair -o MENDED)");
 }
 
+MembraneLaw law_of(const PlacedBody& body, const TetMesh& mesh, size_t t, const MaterialParameters& parameters) {
+  const Value& shell = body.scene["shell"];
+  const double E = young_modulus(parameters.lame), nu = poisson_ratio(parameters.lame);
+  const double thickness = shell["thickness"].number();
+  const Value* weave = shell.find("weave");
+  if (!weave) return IsotropicSheet{E, nu, thickness};
+  const double weft = (*weave)["weft"].number();
+  if (!(nu * nu * weft < E))
+    throw error_at((*weave)["weft"].place,
+                   "weft = " + number_text(weft) + "; must be below young / poisson^2 = " + number_text(E / (nu * nu)));
+  const Triangle& corners = mesh.sheet[body.first_triangle + t];
+  const std::array<Vec3d, 3> X = {mesh.rest[corners[0]], mesh.rest[corners[1]], mesh.rest[corners[2]]};
+  const Value& along = (*weave)["warp"];
+  if (const Vec3d n = cross(X[1] - X[0], X[2] - X[0]), d = along.vector();
+      !(norm(cross(n, d)) > kAcross * norm(n) * norm(d)))
+    throw error_at(along.place, "warp is normal to triangle " + std::to_string(t) + " of body '" + body.name() +
+                                    "'; give a direction along the sheet");
+  const PlaneVector warp = direction_in_plane(X, along.vector());
+  return OrthotropicSheet{E, weft, nu, (*weave)["shear"].number(), thickness, warp};
+}
+
+double moment_of(const Value& shell, const MaterialParameters& parameters) {
+  if (const Value* moment = shell.find("moment")) return moment->number();
+  const double E = young_modulus(parameters.lame), nu = poisson_ratio(parameters.lame);
+  return E * std::pow(shell["thickness"].number(), 3) / (12 * (1 - nu * nu));
+}
+
+// Rejects edges of three or more triangles and sheets without bending stiffness.
+void require_mid_edges(const PlacedBody& body, const std::vector<Triangle>& triangles) {
+  const Value& shell = body.scene["shell"];
+  if (const Value* moment = shell.find("moment"); moment && moment->number() == 0)
+    throw error_at(moment->place, "moment = 0; bending = \"mid_edge\" needs a positive one (or choose \"hinge\")");
+  const std::vector<EdgeUse> uses = edge_uses(triangles);
+  for_each_edge(uses, [&](const EdgeUse* first, const EdgeUse* last) {
+    if (last - first > 2)
+      throw error_at(shell["bending"].place, "bending = \"mid_edge\": body '" + body.name() + "' has an edge of " +
+                                                 std::to_string(last - first) +
+                                                 " triangles, and two are possible (choose \"hinge\")");
+  });
+}
+
+// Adds the plates of mid-edge bending to the sheet, and its angles to the model. `moment` replaces the stiffness along
+// direction 1, and scales the others.
+void add_mid_edges(const PlacedBody& body, const BodyMaterial& material, Model& model, SheetMaterial& sheet) {
+  const auto first = model.mesh.sheet.begin() + body.first_triangle;
+  const std::vector<Triangle> triangles(first, first + static_cast<std::ptrdiff_t>(sheet.laws.size()));
+  require_mid_edges(body, triangles);
+  const bool has_moment = body.scene["shell"].find("moment") != nullptr;
+  const double thickness = body.scene["shell"]["thickness"].number();
+  std::vector<double> mass;
+  for (size_t t = 0; t < triangles.size(); ++t) {
+    PlateStiffness& plate = sheet.plates.emplace_back(plate_stiffness(sheet.laws[t]));
+    const double scale = has_moment ? sheet.moment[t] / plate.D11 : 1;
+    for (double* D : {&plate.D11, &plate.D22, &plate.D12, &plate.D33}) *D *= scale;
+    mass.push_back(material.density[t] * std::pow(thickness, 3) / 12);
+  }
+  sheet.first_angle_row = model.rows();
+  for (const AngleRow& row : make_angle_rows(model.mesh.rest, triangles, mass)) model.angle_rows.push_back(row);
+}
+
 }  // namespace
 
 BodyMesh make_sheet_mesh(Value& body, MeshLoader& loader) {
@@ -116,38 +176,23 @@ BodyMesh make_sheet_mesh(Value& body, MeshLoader& loader) {
   return result;
 }
 
-std::unique_ptr<TetElasticity> sheet_elasticity(const PlacedBody& body, const TetMesh& mesh,
-                                                std::span<const MaterialParameters> parameters) {
+std::unique_ptr<TetElasticity> sheet_elasticity(const PlacedBody& body, const BodyMaterial& material,
+                                                const std::vector<char>& held, Model& model) {
   const Value& shell = body.scene["shell"];
-  const double thickness = shell["thickness"].number();
-  const Value *moment = shell.find("moment"), *weave = shell.find("weave");
-  SheetMaterial material;
-  material.rest = shell["rest"].text() == "flat" ? RestAngles::flat : RestAngles::of_rest;
+  const std::vector<MaterialParameters>& parameters = material.parameters;
+  SheetMaterial sheet;
+  sheet.rest = shell["rest"].text() == "flat" ? RestAngles::flat : RestAngles::of_rest;
   for (size_t t = 0; t < parameters.size(); ++t) {
-    const double E = young_modulus(parameters[t].lame), nu = poisson_ratio(parameters[t].lame);
+    const double nu = poisson_ratio(parameters[t].lame);
     if (nu < 0)
       throw error_at(body.scene["material"].place, "Poisson's ratio is " + number_text(nu) + " in triangle " +
                                                        std::to_string(t) + "; that of a shell must be at least 0");
-    material.moment.push_back(moment ? moment->number() : E * std::pow(thickness, 3) / (12 * (1 - nu * nu)));
-    if (!weave) {
-      material.laws.push_back(IsotropicSheet{E, nu, thickness});
-      continue;
-    }
-    const double weft = (*weave)["weft"].number();
-    if (!(nu * nu * weft < E))
-      throw error_at((*weave)["weft"].place, "weft = " + number_text(weft) +
-                                                 "; must be below young / poisson^2 = " + number_text(E / (nu * nu)));
-    const Triangle& corners = mesh.sheet[body.first_triangle + t];
-    const std::array<Vec3d, 3> X = {mesh.rest[corners[0]], mesh.rest[corners[1]], mesh.rest[corners[2]]};
-    const Value& along = (*weave)["warp"];
-    if (const Vec3d n = cross(X[1] - X[0], X[2] - X[0]), d = along.vector();
-        !(norm(cross(n, d)) > kAcross * norm(n) * norm(d)))
-      throw error_at(along.place, "warp is normal to triangle " + std::to_string(t) + " of body '" + body.name() +
-                                      "'; give a direction along the sheet");
-    const PlaneVector warp = direction_in_plane(X, along.vector());
-    material.laws.push_back(OrthotropicSheet{E, weft, nu, (*weave)["shear"].number(), thickness, warp});
+    sheet.laws.push_back(law_of(body, model.mesh, t, parameters[t]));
+    sheet.moment.push_back(moment_of(shell, parameters[t]));
   }
-  return make_sheet_elasticity(mesh, body.first_triangle, material);
+  if (shell["bending"].text() == "mid_edge") add_mid_edges(body, material, model, sheet);
+  sheet.held = held;
+  return make_sheet_elasticity(model.mesh, body.first_triangle, sheet);
 }
 
 void add_wind(const Table& document, Model& model) {

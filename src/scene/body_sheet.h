@@ -6,6 +6,7 @@
 
 #include "energy/tet_elasticity.h"
 #include "scene/body_actions.h"
+#include "scene/body_material.h"
 #include "scene/body_mesh.h"
 
 namespace aspic {
@@ -13,9 +14,10 @@ namespace aspic {
 // Resolves mesh or shape of a body with `shell`, and names its file in the results. Throws InvalidInput.
 BodyMesh make_sheet_mesh(Value& body, MeshLoader& loader);
 
-// Returns the elastic energy of a body with `shell`. `parameters`: one per triangle. Throws InvalidInput.
-std::unique_ptr<TetElasticity> sheet_elasticity(const PlacedBody& body, const TetMesh& mesh,
-                                                std::span<const MaterialParameters> parameters);
+// Returns the elastic energy of a body with `shell`. Adds the rows of angles of mid-edge bending to the model. `held`:
+// 1 for each vertex of the model that pins hold. Throws InvalidInput.
+std::unique_ptr<TetElasticity> sheet_elasticity(const PlacedBody& body, const BodyMaterial& material,
+                                                const std::vector<char>& held, Model& model);
 
 // Adds the drag of `wind`, if the document has one, on all sheets. Throws InvalidInput.
 void add_wind(const Table& document, Model& model);

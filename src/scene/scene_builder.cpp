@@ -166,6 +166,15 @@ class SceneBuilder {
   void add_model() {
     const Value& solver = *source_.document.find("solver");
     const MassKind kind = solver["mass"].text() == "lumped" ? MassKind::lumped : MassKind::consistent;
+    const SceneActions actions = {bodies_,
+                                  source_.document.find("gravity")->vector(),
+                                  source_.document.find("time")->find("duration")->number(),
+                                  kind,
+                                  files_,
+                                  source_.notes,
+                                  options_.limit.memory};
+    add_pins(actions, model_);
+    const std::vector<char> held = held_vertices();
     std::vector<MaterialParameters> of_sheets;
     std::vector<double> density_of_sheets;
     for (PlacedBody& body : bodies_) {
@@ -173,7 +182,7 @@ class SceneBuilder {
       const BodyMaterial material = body_material(body, files_, source_.notes);
       note_stiffness(body, material, source_.document.find("gravity")->vector(), source_.notes);
       if (!body.mesh.sheet.empty()) {
-        model_.elasticity.push_back(sheet_elasticity(body, model_.mesh, material.parameters));
+        model_.elasticity.push_back(sheet_elasticity(body, material, held, model_));
         append_to(density_of_sheets, material.density);
         append_to(of_sheets, material.parameters);
         continue;
@@ -186,17 +195,23 @@ class SceneBuilder {
     append_to(model_.density, density_of_sheets);
     export_moduli(of_sheets, model_);
     model_.numbering.tet.append(model_.mesh.tet_count(), {}, static_cast<int>(model_.mesh.sheet.size()));
-    model_.mass = std::make_unique<MassMatrix>(model_.mesh, model_.density, kind);
-    add_actions(
-        {bodies_, source_.document.find("gravity")->vector(), source_.document.find("time")->find("duration")->number(),
-         kind, files_, source_.notes, options_.limit.memory},
-        model_);
+    model_.mass = std::make_unique<MassMatrix>(model_.mesh, model_.density, kind, angle_masses(model_));
+    add_loads_and_damping(actions, model_);
     add_wind(source_.document, model_);
     MeshLoader loader = mesh_loader();
     add_scene_contact(source_.document, loader, initial_positions(), model_);
     for (const PlacedBody& body : bodies_) note_parts(body, model_, source_.notes);
   }
 
+  // Returns 1 for each vertex that pins hold in all directions.
+  std::vector<char> held_vertices() const {
+    const Pins pins(model_.pins, initial_positions());
+    std::vector<char> held;
+    for (int v = 0; v < pins.rows(); ++v) held.push_back(pins.holds(v));
+    return held;
+  }
+
+  // Of the vertices.
   std::vector<double> initial_positions() const {
     std::vector<double> q;
     for (const PlacedBody& body : bodies_)
@@ -220,6 +235,7 @@ class SceneBuilder {
     }
     state.q = initial_positions();
     state.qdot = model_.numbering.vertex.from_user(state.qdot, 3);
+    for (auto* v : {&state.q, &state.qdot}) v->resize(3 * static_cast<size_t>(model_.rows()), 0.0);
     return state;
   }
 

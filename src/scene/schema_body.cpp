@@ -49,6 +49,10 @@ void add_body(Schema& s) {
        "A sheet, such as cloth: the triangles of `mesh` or `shape`, neo-Hookean in plane stress."},
       {key("thickness", kNumber, "thickness", Units{"m"}, kPositive, kRequired),
        key("moment", kNumber, "bending stiffness D; default: E t^3 / (12 (1 - nu^2))", Units{"N m"}, kNotNegative),
+       key("bending", kText,
+           "hinge: depends on the mesh; mid_edge: converges with the mesh, an angle per edge is unknown, and a row of "
+           "pinned triangles clamps the sheet",
+           Choices{{"hinge", "mid_edge"}}, Usual{"\"hinge\"", "for cloth"}),
        key("rest", kText, "angles between triangles at rest", Choices{{"mesh", "flat"}},
            Usual{"\"mesh\"", "those of the mesh"}),
        key("weave", kTable, "orthotropic fabric", Members{"weave"})});
