@@ -54,6 +54,8 @@ TEST(Formulas, EveryClosedFormReferenceIsRendered) {
                                          "contact/frames",
                                          "contact/units",
                                          "statics/cook_incompressible",
+                                         "statics/scordelis_lo",
+                                         "statics/pinched_hemisphere",
                                          "statics/mesh_error",
                                          "statics/mesh_error_invariance",
                                          "statics/beam_incompressible",

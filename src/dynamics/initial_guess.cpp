@@ -42,7 +42,8 @@ InitialGuess initial_guess_named(const std::string& name) {
 bool Guesser::propose(const StepTools& tools, InitialGuess candidate, const GuessContext& known) {
   trial_.assign(known.q.begin(), known.q.end());
   if (candidate == InitialGuess::zero) {
-    for (size_t i = 0; i < trial_.size(); ++i) trial_[i] = tools.model.mesh.rest[i / 3][static_cast<int>(i % 3)];
+    const std::vector<Vec3d>& X = tools.model.mesh.rest;
+    for (size_t i = 0; i < trial_.size(); ++i) trial_[i] = i / 3 < X.size() ? X[i / 3][static_cast<int>(i % 3)] : 0;
   } else if (candidate == InitialGuess::extrapolated) {
     if (known.ahead == 0) return false;
     for (size_t i = 0; i < trial_.size(); ++i) trial_[i] += known.ahead * known.qdot[i];

@@ -22,6 +22,7 @@ void add_order_checks(std::vector<Check>& checks);
 void add_cylinder_checks(std::vector<Check>& checks);
 void add_vibration_checks(std::vector<Check>& checks);
 void add_bending_checks(std::vector<Check>& checks);
+void add_shell_checks(std::vector<Check>& checks);
 void add_column_checks(std::vector<Check>& checks);
 void add_cook_checks(std::vector<Check>& checks);
 void add_pressure_checks(std::vector<Check>& checks);
