@@ -81,7 +81,8 @@ void check_strip(const Subject& subject, Findings& found) {
     return all;
   }();
   const double free_length = 1 - size / 2;  // hinges end halfway between the last fixed row and the first free one
-  found.expect("deflection of the tip over the length", {-box.lower[1] / free_length, kDeflection, 0.02},
+  found.expect("deflection of the tip over the length",
+               {-box.lower[1] / free_length, kDeflection, subject.quick ? 0.06 : 0.02},
                "the stiffness of hinges depends on the mesh; nearly equilateral triangles suit it");
 }
 
