@@ -38,7 +38,7 @@ def with_preroll(sampled, preroll):
     """Frames with `preroll` more at the beginning, from the rest shape to the first one."""
     if preroll == 0:
         return sampled.frames
-    start = sampled.rest.astype(np.float32) if sampled.ob.aspic.role == "BODY" else sampled.frames[0]
+    start = sampled.rest.astype(np.float32) if sampled.ob.aspic.role in sample.SIMULATED else sampled.frames[0]
     share = (np.arange(preroll) / preroll).astype(np.float32)[:, None, None]
     return np.concatenate([(1 - share) * start + share * sampled.frames[0], sampled.frames])
 
@@ -53,10 +53,16 @@ def body_text(name, sampled, folder, preroll, fps):
         attributes["young"] = sampled.stiffness
     mesh = name + ".ply"
     files.write_ply(os.path.join(folder, mesh), sampled.rest, sampled.triangles, attributes)
-    material = {"model": settings.model, "poisson": settings.poisson, "density": settings.density,
-                "young": {"file": mesh, "name": "young"} if "young" in attributes else settings.young}
-    text = files.table("[body]", {"name": name, "mesh": mesh, "friction": settings.friction, "material": material,
-                                  "mesh_size": settings.resolution * sampled.median_edge()})
+    keys = {"name": name, "mesh": mesh, "friction": settings.friction}
+    if settings.role == "CLOTH":
+        keys["shell"] = {"thickness": settings.thickness, "moment": settings.bending}
+        keys["material"] = {"young": settings.stretching / settings.thickness, "poisson": 0.3,
+                            "density": settings.areal_density / settings.thickness}
+    else:
+        keys["material"] = {"model": settings.model, "poisson": settings.poisson, "density": settings.density,
+                            "young": {"file": mesh, "name": "young"} if "young" in attributes else settings.young}
+        keys["mesh_size"] = settings.resolution * sampled.median_edge()
+    text = files.table("[body]", keys)
     if "pin" not in attributes:
         return text
     pin = {"where": {"file": mesh, "name": "pin"}}
@@ -77,16 +83,16 @@ def obstacle_text(name, sampled, folder, preroll, fps):
     return files.table("[obstacle]", keys)
 
 
-def simulated(scene, role):
-    return [ob for ob in scene.objects if ob.type == "MESH" and ob.aspic.role == role and not ob.hide_render]
+def simulated(scene, *roles):
+    return [ob for ob in scene.objects if ob.type == "MESH" and ob.aspic.role in roles and not ob.hide_render]
 
 
 def write(context):
     """Writes scene.toml and its files. Returns the folder."""
     scene, folder = context.scene, folder_of(context)
-    bodies, obstacles = simulated(scene, "BODY"), simulated(scene, "OBSTACLE")
+    bodies, obstacles = simulated(scene, *sample.SIMULATED), simulated(scene, "OBSTACLE")
     if not bodies:
-        raise sample.Refused("no object is a soft body; select one and choose its role")
+        raise sample.Refused("no object is a soft body or cloth; select one and choose its role")
     for ob in bodies:
         if ob.library or ob.mode == "EDIT":
             raise sample.Refused(f"{ob.name} is " + ("linked; make it local" if ob.library else "in edit mode; leave it"))
@@ -99,7 +105,7 @@ def write(context):
     text = "gravity = " + files.toml(gravity) + "\n"
     text += files.table("time", {"step": 1 / (fps * scene.aspic.substeps), "duration": steps / fps})
     text += files.table("output", {"every": 1 / fps, "vtu": False, "usd": False})
-    if scene.aspic.collide:
+    if scene.aspic.collide or any(ob.aspic.role == "CLOTH" for ob in bodies):
         text += "[contact]\n"
     named = list(zip(names(bodies + obstacles), sampled))
     for name, each in named[:len(bodies)]:

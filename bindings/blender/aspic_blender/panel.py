@@ -4,6 +4,16 @@ import bpy
 from . import operators
 
 
+def draw_cloth(layout, ob):
+    settings = ob.aspic
+    layout.prop(settings, "fabric")
+    box = layout.box()
+    for name in ("thickness", "stretching", "bending", "areal_density"):
+        box.prop(settings, name)
+    layout.prop_search(settings, "pin_group", ob, "vertex_groups")
+    layout.prop(settings, "friction")
+
+
 def draw_body(layout, ob):
     settings = ob.aspic
     layout.prop(settings, "preset")
@@ -32,6 +42,8 @@ class ASPIC_PT_sidebar(bpy.types.Panel):
             layout.prop(ob.aspic, "role", expand=True)
             if ob.aspic.role == "BODY":
                 draw_body(layout, ob)
+            elif ob.aspic.role == "CLOTH":
+                draw_cloth(layout, ob)
             elif ob.aspic.role == "OBSTACLE":
                 layout.prop(ob.aspic, "friction")
         layout.separator()

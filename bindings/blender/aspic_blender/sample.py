@@ -14,6 +14,9 @@ KEEPING = {
 }
 
 
+SIMULATED = ("BODY", "CLOTH")  # roles
+
+
 class Refused(Exception):
     """A scene that cannot be baked; the text is for the user."""
 
@@ -82,7 +85,7 @@ class Sampled:
 
     def start(self, evaluated):
         settings, matrix = self.ob.aspic, np.array(evaluated.matrix_world)
-        is_body = settings.role == "BODY"
+        is_body = settings.role in SIMULATED
         mesh = self.ob.data if is_body else evaluated.data
         if not len(mesh.polygons):
             raise Refused(f"{self.ob.name} has no faces")
@@ -92,7 +95,7 @@ class Sampled:
             raise Refused(f"{self.ob.name} is scaled to zero along an axis")
         if is_body and settings.pin_group:
             self.pin = weights(self.ob, evaluated.data, settings.pin_group)
-        if is_body and settings.stiffness_group:
+        if settings.role == "BODY" and settings.stiffness_group:
             self.stiffness = young(settings, weights(self.ob, evaluated.data, settings.stiffness_group))
 
     def add(self, evaluated, frame):

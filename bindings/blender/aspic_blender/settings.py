@@ -9,6 +9,12 @@ PRESETS = {  # identifier: label, model, Young's modulus [Pa], Poisson's ratio, 
     "silicone": ("Silicone", "neo_hookean", 2e5, 0.45, 1100),
     "rubber": ("Rubber", "neo_hookean", 2e6, 0.45, 1100),
 }
+FABRICS = {  # identifier: label, thickness [m], resistance to stretching [N/m], to bending [N m], mass [kg/m^2]
+    "silk": ("Silk", 2e-4, 500, 1e-6, 0.08),
+    "cotton": ("Cotton", 5e-4, 1000, 1e-5, 0.15),
+    "denim": ("Denim", 1e-3, 3000, 1e-4, 0.4),
+    "leather": ("Leather", 2e-3, 1e4, 1e-3, 1.5),
+}
 MODELS = ("neo_hookean", "stable_neo_hookean", "corotated", "stvk")
 
 
@@ -16,8 +22,13 @@ def apply_preset(settings, _context):
     _, settings.model, settings.young, settings.poisson, settings.density = PRESETS[settings.preset]
 
 
+def apply_fabric(settings, _context):
+    _, settings.thickness, settings.stretching, settings.bending, settings.areal_density = FABRICS[settings.fabric]
+
+
 class ObjectSettings(bpy.types.PropertyGroup):
     role: EnumProperty(name="Role", items=[("NONE", "None", "Not simulated"), ("BODY", "Soft body", "Simulated"),
+                                           ("CLOTH", "Cloth", "Simulated as a sheet"),
                                            ("OBSTACLE", "Obstacle", "Soft bodies collide with this object")])
     preset: EnumProperty(name="Material", items=[(k, v[0], f"{v[1]}, {v[2]:g} Pa") for k, v in PRESETS.items()],
                          update=apply_preset, description="Sets the values below")
@@ -34,6 +45,13 @@ class ObjectSettings(bpy.types.PropertyGroup):
                                              ("LOG", "Logarithmic", "Equal factors for equal steps of weight")])
     resolution: FloatProperty(name="Element size", default=1, min=0.2, max=20,
                               description="Edge length of the tets, in median edges of the mesh")
+    fabric: EnumProperty(name="Fabric", items=[(k, v[0], f"{v[2]:g} N/m, {v[4]:g} kg/m^2") for k, v in FABRICS.items()],
+                         update=apply_fabric, default="cotton", description="Sets the values below")
+    thickness: FloatProperty(name="Thickness [m]", default=5e-4, min=1e-6, soft_max=0.01, precision=5,
+                             description="Surfaces keep half of it from the mesh")
+    stretching: FloatProperty(name="Stretching [N/m]", default=1000, min=1e-3, soft_max=1e5, description="Force per width for a stretch of 1")
+    bending: FloatProperty(name="Bending [N m]", default=1e-5, min=0, soft_max=0.1, precision=7)
+    areal_density: FloatProperty(name="Mass [kg/m^2]", default=0.15, min=1e-3, soft_max=10)
     friction: FloatProperty(name="Friction", default=0.4, min=0, soft_max=1.5, description="Coefficient of friction")
 
 

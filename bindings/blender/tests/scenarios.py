@@ -372,6 +372,25 @@ def moving_obstacle_pushes():
 
 
 @scenario
+def cloth_drapes_over_obstacle():
+    ball(name="Head", radius=0.2, at=(0, 0, 0.4), subdivisions=3).aspic.role = "OBSTACLE"
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=14, y_subdivisions=14, size=0.8, location=(0, 0, 0.62))
+    cloth = bpy.context.object
+    cloth.name, cloth.aspic.role, cloth.aspic.fabric = "Scarf", "CLOTH", "denim"
+    check(cloth.aspic.stretching == 3000)
+    cloth.aspic.pin_group = paint(cloth, "corner", lambda x: float(x.x > 0.39 and x.y > 0.39))
+    folder = bake(12)
+    check_shows(cloth, folder, "Scarf")
+    x = shown(cloth, 12)
+    corner = np.argmax(x[:, 0] + x[:, 1])
+    check(abs(x[corner] - shown(cloth, 1)[corner]).max() < SINGLE, "the pinned corner moved")
+    check(np.linalg.norm(x - [0, 0, 0.4], axis=1).min() > 0.19, "the cloth enters the head")
+    check(x[:, 2].min() < 0.5, "the cloth did not fall")
+    stretch = lambda x: np.linalg.norm(x[1:15] - x[:14], axis=1).max()
+    check(stretch(x) < 1.1 * stretch(shown(cloth, 1)))
+
+
+@scenario
 def generating_modifiers_follow():
     ob = ball()
     ob.modifiers.new("Smooth", "SMOOTH").iterations = 0

@@ -341,3 +341,26 @@ def test_velocities_of_pins_are_refused(scene):
     with pytest.raises(aspic.InvalidInput, match=r"v\[\d+\] = \(0.1, 0, 0\); the pin 'jelly.\w+' prescribes the motion"):
         sim.v = np.full(sim.v.shape, [.1, 0, 0])
     assert sim.step().ok
+
+
+def test_sheets_of_arrays_files_and_shapes(tmp_path):
+    n = 6
+    grid = np.stack(np.meshgrid(np.linspace(0, 1, n), [0.], np.linspace(0, 1, n), indexing="ij"), -1).reshape(-1, 3)
+    at = np.arange(n * n).reshape(n, n)
+    quads = np.stack([at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]], -1).reshape(-1, 4)
+    surface = aspic.Surface(grid, np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]]))
+    scene = aspic.Scene(time={"step": 0.02, "duration": 0.1}, wind={"velocity": ["1 + t", 0, 0]})
+    cloth = scene.add(surface, name="cloth", shell={"thickness": 1e-3}, material={"density": 400.})
+    cloth.pin(grid[:, 0] < 0.01)
+    scene.add({"disc": {"radius": 0.2, "size": 0.1}}, name="disc", shell={"thickness": 2e-3}, translate=[0, -1, 0])
+    sim = scene.simulation() if hasattr(scene, "simulation") else aspic.Simulation(scene)
+    assert sim.triangles.shape[1] == 3 and len(sim.tets) == 0
+    assert sim.bodies["cloth"]["triangles"] == slice(0, 50, 1)
+    assert sim.mass[sim.bodies["cloth"]["vertices"]].sum() == pytest.approx(0.4)
+    for _ in range(5):
+        assert sim.step().ok
+    surface.vertices[:] = 0  # the body has a copy
+    with pytest.raises(AttributeError):
+        cloth.mesh.vertices = grid
+    with pytest.raises(aspic.InvalidInput, match="encloses no volume"):
+        aspic.Scene().add({"rectangle": {"width": 1, "height": 1, "size": 0.5}})

@@ -3,7 +3,8 @@
 
 usage: tests/bench/contact/run.py [SCENE...] [--steps N] [--threads N] [--csv FILE] [--write-only] [--refine]
 
-SCENE: chute knives funnel rollers twist boxes slab slab_fine; all by default. --refine: the chute from 1 000 to 30 000 vertices, and the exponent of
+SCENE: chute knives funnel rollers twist boxes slab slab_fine, and of sheets hanging draped draped_coarse stack cape tablecloth; all by
+default. --refine: the chute from 1 000 to 30 000 vertices, and the exponent of
 the growth of its cost; --refine 5 adds 100 000. Times per step are those of the program. Shares are those of stages in the wall time:
 of assembling and solving linear systems, of the line search, and of contact in all of them (search for pairs, bounds of steps, forces
 and Hessians)."""

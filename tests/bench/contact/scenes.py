@@ -34,6 +34,23 @@ def ball(cells, radius, center=(0, 0, 0)):
     return grid((cells,) * 3, (-1, -1, -1), (1, 1, 1), place)
 
 
+def sheet(width, height, size):
+    """Nodes and nearly equilateral triangles of a rectangle in the plane y = 0."""
+    columns, rows = round(width / size), round(height / size / math.sqrt(.75))
+    nodes, triangles, last = [], [], []
+    for r in range(rows + 1):
+        along = list(range(columns + 1)) if r % 2 == 0 else [0] + [c + .5 for c in range(columns)] + [columns]
+        row = [(len(nodes) + i, a) for i, a in enumerate(along)]
+        nodes += [[width * (a / columns - .5), 0, height * (r / rows - .5)] for a in along]
+        i = j = 0
+        while last and (i + 1 < len(last) or j + 1 < len(row)):
+            low = j + 1 == len(row) or (i + 1 < len(last) and abs(last[i + 1][1] - row[j][1]) <= abs(last[i][1] - row[j + 1][1]))
+            triangles.append((last[i][0], row[j][0], last[i + 1][0] if low else row[j + 1][0]))
+            i, j = i + low, j + (not low)
+        last = row
+    return nodes, triangles
+
+
 def mesh_text(nodes, tets):
     return ("MeshVersionFormatted 2\nDimension 3\nVertices\n%d\n" % len(nodes) + "".join("%.9g %.9g %.9g 0\n" % tuple(x) for x in nodes) +
             "Tetrahedra\n%d\n" % len(tets) + "".join("%d %d %d %d 0\n" % tuple(v + 1 for v in t) for t in tets) + "End\n")
@@ -76,7 +93,7 @@ class Problem:
     def __init__(self, h, E, nu, rho, mu, steps, gravity=-9.81):
         self.given = {"time_step_s": h, "young_Pa": E, "poisson": nu, "density_kg_m3": rho, "friction": mu, "steps": steps,
                       "gravity_y_m_s2": gravity, "tolerance": 1e-4, "material": "Neo-Hookean"}
-        self.bodies, self.obstacles = [], []
+        self.bodies, self.obstacles, self.more = [], [], ""  # more: further text of the scene
 
     def write(self, folder):
         g = self.given
@@ -86,8 +103,9 @@ class Problem:
                 f"[contact]\nfriction = {g['friction']}\n")
         written = {}
         for number, (mesh, keys) in enumerate(self.bodies):
-            name = written.setdefault(id(mesh), f"body{number}.mesh")
-            (folder / name).write_text(mesh_text(*mesh))
+            is_sheet = len(mesh[1][0]) == 3
+            name = written.setdefault(id(mesh), f"body{number}." + ("obj" if is_sheet else "mesh"))
+            (folder / name).write_text(obj_text(*mesh) if is_sheet else mesh_text(*mesh))
             text += (f"[[body]]\nname = \"body{number}\"\nmesh = \"{name}\"\nmaterial = {{ model = \"neo_hookean\", young = {g['young_Pa']}, "
                      f"poisson = {g['poisson']}, density = {g['density_kg_m3']} }}\n{keys}")
         for number, (surface, keys) in enumerate(self.obstacles):
@@ -96,7 +114,7 @@ class Problem:
                 (folder / f"obstacle{number}.obj").write_text(obj_text(*surface))
                 text += f"mesh = \"obstacle{number}.obj\"\n"
             text += keys
-        (folder / "scene.toml").write_text(text)
+        (folder / "scene.toml").write_text(text + self.more)
         g["vertices"] = sum(len(mesh[0]) for mesh, _ in self.bodies)
         (folder / "parameters.json").write_text(json.dumps(g, indent=1) + "\n")
 
@@ -163,5 +181,55 @@ def slab(cells=34, steps=50):
     return p
 
 
+SHELL = "shell = { thickness = 1e-3, moment = 1e-5 }\n"
+
+
+def hanging(size=.0107, steps=60):
+    """A cloth of 1 m hangs from two corners, without contact."""
+    p = Problem(1 / 60, 1e6, .3, 200, 0, steps)
+    p.bodies = [(sheet(1, 1, size), SHELL + '[[body.pin]]\nwhere = "abs(X) > 0.499 && Z < -0.499"\n')]
+    return p
+
+
+def draped(size=.0107, steps=60):
+    """The same cloth falls onto a ball."""
+    p = Problem(1 / 60, 1e6, .3, 200, .3, steps)
+    p.bodies = [(sheet(1, 1, size), SHELL + "translate = [0.01, 0.31, 0.02]\n")]
+    p.obstacles = [(None, "sphere = { center = [0, 0, 0], radius = 0.3 }\n")]
+    return p
+
+
+def stack(size=.031, steps=200):
+    """Eight cloths fall onto each other and a floor."""
+    p = Problem(1 / 60, 1e6, .3, 200, .3, steps)
+    mesh = sheet(1, 1, size)
+    p.bodies = [(mesh, SHELL + f"rotate = {{ axis = [0, 1, 0], angle_deg = {11 * k} }}\ntranslate = [0, {.02 + .02 * k}, 0]\n") for k in range(8)]
+    p.obstacles = [(None, "plane = {}\n")]
+    return p
+
+
+def cape(size=.0089, steps=60):
+    """A cape on a moving capsule in wind."""
+    p = Problem(1 / 60, 1e6, .3, 300, .3, steps)
+    walk = 'motion = { displacement = [0, 0, "t - 0.5 * (1 - exp(-2 * t))"] }\n'
+    p.bodies = [(sheet(1.1, 1.3, size), SHELL + "rotate = { axis = [1, 0, 0], angle_deg = -90 }\ntranslate = [0, 0.85, -0.2]\n"
+                 f'[[body.pin]]\nwhere = "Y > 1.499 && abs(X) < 0.17"\n{walk}')]
+    p.obstacles = [(None, f"capsule = {{ from = [0, 0.6, 0], to = [0, 1.42, 0], radius = 0.17 }}\n{walk}")]
+    p.more = '[wind]\nvelocity = ["sin(2 * t)", 0, "-1 - 1.5 * sin(5 * t + 2 * x)"]\n'
+    return p
+
+
+def tablecloth(size=.0152, steps=40, speed=2.):
+    """A cloth is pulled from under three boxes."""
+    p = Problem(1 / 60, 1e6, .3, 200, .3, steps)
+    box = grid((4, 4, 4), (-.06, 0, -.06), (.06, .12, .06))
+    p.bodies = [(sheet(1, 1, size), SHELL + 'translate = [0, 0.005, 0]\n[[body.pin]]\nwhere = "X > 0.499"\n'
+                 f'motion = {{ displacement = ["{speed} * max(0, t - 0.1)", 0, 0] }}\n')]
+    p.bodies += [(box, f"translate = [{x}, 0.015, {z}]\n") for x, z in ((-.2, -.2), (.2, 0), (-.2, .2))]
+    p.obstacles = [(None, "plane = {}\n")]
+    return p
+
+
 PROBLEMS = {"chute": chute, "knives": knives, "funnel": funnel, "rollers": rollers, "twist": twist, "boxes": boxes, "slab": slab,
-            "slab_fine": lambda: slab(70)}
+            "slab_fine": lambda: slab(70), "hanging": hanging, "draped": draped, "draped_coarse": lambda: draped(.052), "stack": stack,
+            "cape": cape, "tablecloth": tablecloth}

@@ -1,0 +1,205 @@
+// Sheets in scenes.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/parallel.h"
+#include "contact/barrier.h"
+#include "io/atomic_file.h"
+#include "mesh/self_intersection.h"
+#include "mesh/surface.h"
+#include "results/run_directory.h"
+#include "scene/scene_cases_test.h"
+
+namespace aspic {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+const std::string kSheet =
+    "[solver]\ntolerance = 1e-6\n[time]\nstep = 0.02\nduration = 0.4\n[[body]]\nname = \"cloth\"\nshape = { rectangle "
+    "= { "
+    "width = 0.4, height = 0.4, size = 0.08 } }\nmaterial = { young = 1e5, poisson = 0.3, density = 500 }\n";
+const std::string kShell = "shell = { thickness = 1e-3 }\n";
+
+void run_steps(Scene& scene, int steps) {
+  for (int i = 0; i < steps; ++i) ASSERT_TRUE(is_success(scene.simulation.step().status)) << i;
+}
+
+TEST(SheetScene, MassIsDensityTimesThicknessTimesArea) {
+  const Scene scene = load(kSheet + kShell);
+  EXPECT_NEAR(scene.simulation.model().mass->total(), 500 * 1e-3 * 0.16, 1e-12);
+}
+
+TEST(SheetScene, HangsFromItsPinWithItsWeight) {
+  Scene scene =
+      load(kSheet + kShell + "[[body.pin]]\nname = \"top\"\nwhere = \"y > 0.19\"\n", {"time.integrator=quasi_static"});
+  run_steps(scene, 1);
+  double force = 0;
+  const std::vector<double> reactions = scene.simulation.reactions();
+  for (size_t i = 1; i < reactions.size(); i += 3) force += reactions[i];
+  EXPECT_NEAR(force, 9.81 * 0.08, 1e-6);
+}
+
+TEST(SheetScene, EqualBitsForAnyThreadCount) {
+  const auto end = [](int threads) {
+    set_thread_count(threads);
+    Scene scene =
+        load(kSheet + kShell +
+                 "translate = [0.02, 0.03, 0.11]\n[[obstacle]]\nsphere = { center = [0, 0, 0], radius = 0.1 }\n"
+                 "[wind]\nvelocity = [\"3 * sin(9 * t)\", 0, 0]\n",
+             {"gravity=[0,0,-9.81]", "contact.friction=0.3"});
+    run_steps(scene, 8);
+    return scene.simulation.state().q;
+  };
+  const int threads = thread_count();
+  const std::vector<double> one = end(1), four = end(4);
+  set_thread_count(threads);
+  EXPECT_EQ(one, four);
+}
+
+// The work of the wind and the loss in drag balance the ledger.
+TEST(SheetScene, WindDoesWorkInTheLedger) {
+  Scene scene = load("gravity = [0, 0, 0]\n[wind]\nvelocity = [0, 0, 5]\n" + kSheet + kShell);
+  double work = 0, loss = 0, error = 0;
+  for (int i = 0; i < 10; ++i) {
+    const StepReport report = scene.simulation.step();
+    ASSERT_TRUE(is_success(report.status));
+    EXPECT_TRUE(report.energy_bound == EnergyBound::holds);
+    work += report.nonconservative_work, loss += report.damping_loss;
+    error = std::max(error, std::abs(report.ledger_error));
+  }
+  EXPECT_GT(work, loss);
+  EXPECT_GT(loss, 0);
+  EXPECT_LT(error, 1e-12 * work);
+}
+
+// No triangle of a sheet that falls on a ball and on a second sheet ever intersects another.
+TEST(SheetScene, SurfacesNeverIntersect) {
+  Scene scene = load("gravity = [0, 0, -9.81]\n" + kSheet + kShell + "translate = [0.02, 0.03, 0.105]\n" +
+                     "[[body]]\nname = \"second\"\nshape = { disc = { radius = 0.2, size = 0.08 } }\n" + kShell +
+                     "translate = [0, 0, 0.13]\nmaterial = { young = 1e5, density = 500 }\n" +
+                     "[[obstacle]]\nname = \"ball\"\nsphere = { center = [0, 0, 0], radius = 0.1 }\n");
+  const Model& model = scene.simulation.model();
+  double gap = INFINITY;
+  for (int i = 0; i < 20; ++i) {
+    const StepReport report = scene.simulation.step();
+    ASSERT_TRUE(is_success(report.status)) << i;
+    if (report.contacts > 0) gap = std::min(gap, report.min_gap);
+    TriMesh surface{{}, boundary_surface(model.mesh).surface.triangles};
+    for (int v = 0; v < model.mesh.vertex_count(); ++v)
+      surface.vertices.push_back(point(scene.simulation.state().q, v));
+    EXPECT_TRUE(self_intersections(surface, 1).pairs.empty()) << i;
+    for (int v = 0; v < model.mesh.vertex_count(); ++v)
+      EXPECT_GT(norm(surface.vertices[v]), 0.1 + 0.5e-3);  // half the thickness from the ball
+  }
+  EXPECT_LT(gap, 0.01);
+  EXPECT_GT(gap, 0);
+}
+
+TEST(SheetScene, FramesHoldTrianglesBesideTets) {
+  const TestFolder folder;
+  Scene scene = load(kSheet + kShell +
+                     "[[body]]\nname = \"cube\"\nshape = { box = { lower = [0, 1, 0], upper = [1, 2, 1], "
+                     "cells = [1, 1, 1] } }\n");
+  const TetFields fields = scene.simulation.tet_fields();
+  const TetMesh& mesh = scene.simulation.model().mesh;
+  EXPECT_EQ(fields.det_F.size(), static_cast<size_t>(mesh.element_count()));
+  EXPECT_EQ(mesh.tet_count(), 6);
+  RunDirectory run = RunDirectory::create(folder.path() / "run", scene, ExistingRun::refuse);
+  run.finish(scene.simulation);
+  const std::string frame = read_file(folder.path() / "run" / "frames" / "body_000000.vtu");
+  EXPECT_THAT(frame, HasSubstr("NumberOfCells=\"" + std::to_string(mesh.element_count()) + "\""));
+}
+
+TEST(SheetScene, WarpIsStifferThanWeft) {
+  const auto sag = [](const char* warp) {
+    Scene scene = load(kSheet + "shell = { thickness = 1e-3, weave = { weft = 1e4, shear = 1e4, warp = " + warp +
+                           " } }\n[[body.pin]]\nwhere = \"y > 0.19\"\n",
+                       {"time.integrator=quasi_static"});
+    EXPECT_TRUE(is_success(scene.simulation.step().status));
+    double low = 0;
+    for (size_t i = 1; i < scene.simulation.state().q.size(); i += 3)
+      low = std::min(low, scene.simulation.state().q[i]);
+    return -0.2 - low;
+  };
+  const double along = sag("[0, 1, 0]"), across = sag("[1, 0, 0]");
+  EXPECT_NEAR(along, 500 * 9.81 * 0.4 * 0.4 / 2 / 1e5, 0.1 * along);  // rho g L^2 / (2 E)
+  EXPECT_GT(across, 5 * along);
+}
+
+TEST(SheetScene, RefusesWhatNeedsASolid) {
+  EXPECT_THAT(refusal(kSheet), AllOf(HasSubstr("rectangle"), HasSubstr("add shell")));
+  EXPECT_THAT(refusal(kSheet + kShell + "order = 2\n"), HasSubstr("needs a solid"));
+  EXPECT_THAT(refusal(kSheet + kShell + "elastic = false\n"), HasSubstr("needs a solid"));
+  EXPECT_THAT(refusal(kSheet + kShell + "[[body.force]]\nwhere = \"all\"\nvalue = [1, 0, 0]\n"),
+              HasSubstr("needs a solid"));
+  EXPECT_THAT(refusal(kSheet + "shell = { thickness = 0 }\n"), HasSubstr("thickness = 0"));
+  EXPECT_THAT(refusal(kSheet + "shell = {}\n"), HasSubstr("needs the key 'thickness'"));
+  EXPECT_THAT(refusal(kSheet + kShell, {"material.model=stvk"}), HasSubstr("a shell is neo_hookean"));
+  EXPECT_THAT(refusal(kSheet + kShell, {"material.poisson=-0.1"}), HasSubstr("at least 0"));
+  EXPECT_THAT(refusal(kSheet + "shell = { thickness = 1e-3, weave = { weft = 1e4, shear = 1e4, warp = [0, 0, 1] } }\n"),
+              HasSubstr("warp is normal"));
+  EXPECT_THAT(refusal("[wind]\nvelocity = [1, 0, 0]\n" + kCube), HasSubstr("no body is a sheet"));
+}
+
+TEST(SheetScene, RefusesDefectsOfTheMesh) {
+  const TestFolder folder;
+  const auto refused = [&](const std::string& obj) {
+    folder.write("sheet.obj", obj);
+    return refusal_of(folder.write("scene.toml", "[[body]]\nmesh = \"sheet.obj\"\n" + kShell));
+  };
+  EXPECT_THAT(refused("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 4\n"),
+              AllOf(HasSubstr("scene.toml:2:8"), HasSubstr("1 triangles have no area (0)")));
+  EXPECT_THAT(refused("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 3 2 1\n"), HasSubstr("vertices of an earlier one (1)"));
+  EXPECT_THAT(refused("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 5 5\nf 1 2 3\n"), HasSubstr("1 vertices belong to no triangle"));
+  EXPECT_EQ(refused("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), "");
+}
+
+// Three sheets that share an edge, and one that is one-sided.
+TEST(SheetScene, RunsWithoutManifoldOrTwoSides) {
+  const TestFolder folder;
+  folder.write(
+      "t.obj",
+      "v 0 0 0\nv 1 0 0\nv 0 0 1\nv 1 0 1\nv 0 1 0\nv 1 1 0\nv 0 0 -1\nv 1 0 -1\nf 1 2 4 3\nf 1 2 6 5\nf 1 2 8 7\n");
+  std::string moebius;
+  constexpr int kAround = 24;
+  for (int i = 0; i < kAround; ++i)
+    for (const double s : {-0.3, 0.0, 0.3}) {
+      const double t = 2 * std::numbers::pi * i / kAround, r = 1 + s * std::cos(t / 2);
+      moebius += "v " + std::to_string(r * std::cos(t)) + " " + std::to_string(r * std::sin(t)) + " " +
+                 std::to_string(s * std::sin(t / 2)) + "\n";
+    }
+  for (int i = 0; i < kAround; ++i)
+    for (int k = 0; k < 2; ++k) {
+      const bool turns = i == kAround - 1;
+      const int a = 3 * i + k + 1, b = a + 1, next = turns ? 0 : 3 * (i + 1);
+      const int c = next + (turns ? 2 - k : k) + 1, d = next + (turns ? 1 - k : k + 1) + 1;
+      moebius +=
+          "f " + std::to_string(a) + " " + std::to_string(b) + " " + std::to_string(d) + " " + std::to_string(c) + "\n";
+    }
+  folder.write("moebius.obj", moebius);
+  for (const std::string mesh : {"t.obj", "moebius.obj"}) {
+    Scene scene = load_scene(folder.write(
+        "scene.toml", "[contact]\n[[obstacle]]\nplane = { origin = [0, -1.5, 0] }\n[[body]]\nmesh = \"" + mesh +
+                          "\"\nshell = { thickness = 0.01 }\nmaterial = { young = 1e5, density = 300 }\n"));
+    run_steps(scene, 3);
+  }
+}
+
+TEST(SheetScene, SheetAloneBecomesAScene) {
+  const TestFolder folder;
+  const std::string level = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 2 3\nf 1 3 4\n";
+  const Scene falls = load_scene(folder.write("level.obj", level));
+  EXPECT_TRUE(falls.simulation.model().contact);
+  EXPECT_TRUE(falls.simulation.model().pins.empty());
+  const Scene hangs = load_scene(folder.write("upright.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n"));
+  EXPECT_EQ(hangs.simulation.model().pins.size(), 1u);
+}
+
+}  // namespace
+}  // namespace aspic
