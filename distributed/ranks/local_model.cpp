@@ -224,9 +224,15 @@ class Maker {
     const MassKind kind = solver["mass"].text() == "lumped" ? MassKind::lumped : MassKind::consistent;
     add_materials();
     model().mass = std::make_unique<MassMatrix>(model().mesh, model().density, kind);
-    add_actions({bodies_, document_.find("gravity")->vector(), document_.find("time")->find("duration")->number(), kind,
-                 files_, local_.notes, std::numeric_limits<std::int64_t>::max()},
-                model());
+    const SceneActions actions = {bodies_,
+                                  document_.find("gravity")->vector(),
+                                  document_.find("time")->find("duration")->number(),
+                                  kind,
+                                  files_,
+                                  local_.notes,
+                                  std::numeric_limits<std::int64_t>::max()};
+    add_pins(actions, model());
+    add_loads_and_damping(actions, model());
   }
 
   void add_materials() {

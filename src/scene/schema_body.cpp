@@ -50,8 +50,9 @@ void add_body(Schema& s) {
       {key("thickness", kNumber, "thickness", Units{"m"}, kPositive, kRequired),
        key("moment", kNumber, "bending stiffness D; default: E t^3 / (12 (1 - nu^2))", Units{"N m"}, kNotNegative),
        key("bending", kText,
-           "hinge: depends on the mesh; mid_edge: converges with the mesh, an angle per edge is unknown, and a row of "
-           "pinned triangles clamps the sheet",
+           "`hinge`: fast, but the stiffness depends on the mesh; `mid_edge`: converges as the mesh is refined, with "
+           "one "
+           "unknown angle per edge. A row of triangles with three pinned vertices clamps the sheet",
            Choices{{"hinge", "mid_edge"}}, Usual{"\"hinge\"", "for cloth"}),
        key("rest", kText, "angles between triangles at rest", Choices{{"mesh", "flat"}},
            Usual{"\"mesh\"", "those of the mesh"}),

@@ -108,6 +108,11 @@ Layout LiveSimulation::layout() const {
   return Layout::of_vertices(model.numbering.vertex, model.mesh.vertex_count());
 }
 
+Layout LiveSimulation::row_layout() const {
+  const Model& model = scene_.simulation.model();
+  return Layout::of_vertices(model.numbering.vertex, model.rows());
+}
+
 void LiveSimulation::check_idle() const {
   if (occupancy_.is_elsewhere())
     throw std::runtime_error("another thread uses this simulation; give each thread its own");
@@ -130,7 +135,7 @@ StepReport LiveSimulation::take_step(const IterationObserver& observe) {
 void LiveSimulation::set_method(const py::object& direction, const py::object& line_search) {
   if (direction.is(direction_) && line_search.is(line_search_)) return;
   Simulation& simulation = scene_.simulation;
-  const MethodContext context{layout(), callbacks_, [this](std::span<double> d) { pins_.set_zero(d); }};
+  const MethodContext context{row_layout(), callbacks_, [this](std::span<double> d) { pins_.set_zero(d); }};
   direction_ = line_search_ = py::object();  // unknown after an exception
   SolverOptions options = solver_;
   options.minimize.line_search.custom = make_python_line_search(line_search, context);
@@ -146,7 +151,7 @@ Report LiveSimulation::step(const py::object& observe, const py::object& directi
   if (is_stepping_) throw std::runtime_error("step() was called inside a step of the same simulation");
   set_method(direction, line_search);
   Simulation& simulation = scene_.simulation;
-  const IterationObserver observer = observer_of(observe, layout(), callbacks_);
+  const IterationObserver observer = observer_of(observe, row_layout(), callbacks_);
   is_stepping_ = true;
   struct Idle {
     bool& is_stepping;

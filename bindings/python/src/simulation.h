@@ -67,7 +67,8 @@ class LiveSimulation {
   const Scene& scene() const { return check_idle(), scene_; }
   Simulation& simulation() { return check_idle(), scene_.simulation; }
   const SceneSource& source() const { return *source_; }
-  Layout layout() const;
+  Layout layout() const;      // of vertices
+  Layout row_layout() const;  // of the rows of an objective: vertices, then angles of shells
 
  private:
   // Throws std::runtime_error if another thread takes a step or writes results.

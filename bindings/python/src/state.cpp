@@ -58,6 +58,12 @@ void refuse_velocities_of_pins(std::span<const double> velocity, const Model& mo
   }
 }
 
+// Appends the angles of shells, which Python does not see.
+std::vector<double> with_angles(std::vector<double> vertices, const std::vector<double>& rows) {
+  vertices.insert(vertices.end(), rows.begin() + static_cast<std::ptrdiff_t>(vertices.size()), rows.end());
+  return vertices;
+}
+
 void assign(LiveSimulation& simulation, Snapshot snapshot) {
   snapshot.previous.reset();
   simulation.restore(snapshot);
@@ -96,7 +102,7 @@ Snapshot snapshot_in(const py::tuple& t) {
 
 void set_positions(LiveSimulation& simulation, const py::object& q) {
   Snapshot snapshot = simulation.simulation().snapshot();
-  std::vector<double> positions = simulation.layout().in(q, "q");
+  std::vector<double> positions = with_angles(simulation.layout().in(q, "q"), snapshot.state.q);
   hold_at(positions, simulation.simulation().model(), snapshot);
   snapshot.state.q = std::move(positions);
   assign(simulation, std::move(snapshot));
@@ -104,7 +110,7 @@ void set_positions(LiveSimulation& simulation, const py::object& q) {
 
 void set_velocities(LiveSimulation& simulation, const py::object& v) {
   Snapshot snapshot = simulation.simulation().snapshot();
-  std::vector<double> velocities = simulation.layout().in(v, "v");
+  std::vector<double> velocities = with_angles(simulation.layout().in(v, "v"), snapshot.state.qdot);
   refuse_velocities_of_pins(velocities, simulation.simulation().model(), snapshot);
   snapshot.state.qdot = std::move(velocities);
   assign(simulation, std::move(snapshot));

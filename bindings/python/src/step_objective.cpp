@@ -22,8 +22,7 @@ std::shared_ptr<StepObjective> StepObjective::make(const SceneSource& source, do
 }
 
 StepObjective::StepObjective(std::unique_ptr<Parts> parts, std::shared_ptr<Callbacks> callbacks, double time)
-    : Function(&parts->E,
-               Layout::of_vertices(parts->scene.model.numbering.vertex, parts->scene.model.mesh.vertex_count()),
+    : Function(&parts->E, Layout::of_vertices(parts->scene.model.numbering.vertex, parts->scene.model.rows()),
                std::move(callbacks)),
       parts_(std::move(parts)),
       time_(time) {}
