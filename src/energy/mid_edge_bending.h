@@ -1,5 +1,5 @@
 // Bending of thin sheets and shells that converges on any mesh. Each edge has an unknown angle xi between its normal
-// and the mean of the normals of its two triangles, so that a triangle sees the half angles a = theta / 2 + xi, and its
+// and the mean of the normals of its two triangles. A triangle has the half angles a = theta / 2 + xi, and its
 // neighbor a = theta / 2 - xi:
 //   V = sum over triangles of (a - a0)' Q (a - a0) / 2,  Q = A B' D B,  B_k = l_k / A (nx^2, ny^2, 2 nx ny)
 // theta is the angle between both triangles (see hinge_angle.h). l, n and A are the lengths of the edges, their normals
