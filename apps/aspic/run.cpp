@@ -143,6 +143,7 @@ class LocalRun : public SteppedRun {
  private:
   // Not after --steps: the rows of a run do not depend on where it was interrupted.
   bool wants_mesh_error(const StepReport& report) const {
+    if (scene_.simulation.model().mesh.tets.empty()) return false;  // of sheets there is no estimate
     return (scene_.mesh_error == "frames" && directory_.is_frame_due(report.time)) ||
            (scene_.mesh_error != "off" && report.step == scene_.steps);
   }
