@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/formatted.h"
+#include "dynamics/integrator.h"
 #include "energy/sheet_elasticity.h"
 #include "energy/wind.h"
 #include "io/mesh_file.h"
@@ -200,6 +201,10 @@ void add_wind(const Table& document, Model& model) {
   if (!table) return;
   if (model.mesh.sheet.empty())
     throw error_at(table->place, "wind: no body is a sheet (wind drags only bodies with `shell`)");
+  const Value& integrator = (*document.find("time"))["integrator"];
+  if (!make_integrator(integrator.text())->facts().is_implicit)
+    throw error_at(integrator.place, "integrator = " + toml_string(integrator.text()) +
+                                         "; wind needs an implicit one (try backward_euler)");
   const Value& velocity = (*table)["velocity"];
   const WindLaw law{(*table)["density"].number(), (*table)["normal"].number(), (*table)["tangential"].number()};
   const auto field = [formula = VectorField(velocity, ExpressionVariables::position_and_time), place = velocity.place](

@@ -144,6 +144,8 @@ TEST(SheetScene, RefusesWhatNeedsASolid) {
   EXPECT_THAT(refusal(kSheet + kShell, {"material.poisson=-0.1"}), HasSubstr("at least 0"));
   EXPECT_THAT(refusal(kSheet + "shell = { thickness = 1e-3, weave = { weft = 1e4, shear = 1e4, warp = [0, 0, 1] } }\n"),
               HasSubstr("warp is normal"));
+  EXPECT_THAT(refusal("[wind]\nvelocity = [1, 0, 0]\n" + kSheet + kShell, {"time.integrator=rk4"}),
+              HasSubstr("wind needs an implicit one"));
   EXPECT_THAT(refusal("[wind]\nvelocity = [1, 0, 0]\n" + kCube), HasSubstr("no body is a sheet"));
 }
 
