@@ -93,9 +93,7 @@ class ElementHessian {
       slope_[k][e_.place(side.row)][side.entry] += side.xi_share;
       if (side.has_theta()) add_hinge(k, moment[k], kind, side.corners(x));
     }
-    for (int i = 0; i < e_.node_count; ++i)
-      for (int j = 0; j <= i; ++j)
-        for (int k = 0; k < 3; ++k) add(i, j, outer(slope_[k][i], weighted(k, j)));
+    for (int j = 0; j < e_.node_count; ++j) add_square(j);
   }
 
   bool is_modified() const { return is_modified_; }
@@ -117,8 +115,12 @@ class ElementHessian {
     }
   }
 
-  Vec3d weighted(int k, int node) const {
-    return e_.Q(k, 0) * slope_[0][node] + e_.Q(k, 1) * slope_[1][node] + e_.Q(k, 2) * slope_[2][node];
+  // Adds the blocks (i, j) of J'QJ, i >= j.
+  void add_square(int j) {
+    for (int k = 0; k < 3; ++k) {
+      const Vec3d weighted = e_.Q(k, 0) * slope_[0][j] + e_.Q(k, 1) * slope_[1][j] + e_.Q(k, 2) * slope_[2][j];
+      for (int i = j; i < e_.node_count; ++i) add(i, j, outer(slope_[k][i], weighted));
+    }
   }
   void add(int i, int j, const Mat3d& block) { K_[i][j] = K_[i][j] + block; }
 

@@ -37,8 +37,9 @@ struct MidEdgeSheet {
   const std::vector<Triangle>& triangles;
   std::span<const PlateStiffness> stiffness;  // one per triangle
   RestAngles rest_angles = RestAngles::of_rest;
-  int first_row = 0;                // of its angles
-  std::span<const char> held = {};  // 1: a Dirichlet condition holds the vertex; empty: none
+  int first_row = 0;  // of its angles
+  // 1: a Dirichlet condition holds the vertex, also if it moves it; empty: none. Later changes have no effect.
+  std::span<const char> held = {};
 };
 
 // Returns the rows of the angles of a sheet. Its edges have the rotary inertia density t^3 A / 12 of a third of their
@@ -53,7 +54,8 @@ class MidEdgeBending : public SteadyEnergy {
   virtual void evaluate(Positions x, std::vector<double>& energy_density) const = 0;
 };
 
-// V is +inf where a triangle is collapsed. Requires positive areas at rest and at most two triangles per edge.
+// V is +inf where a triangle is collapsed. Requires positive areas at rest, positive definite stiffnesses, and at most
+// two triangles per edge.
 std::unique_ptr<MidEdgeBending> make_mid_edge_bending(const MidEdgeSheet& sheet);
 
 }  // namespace aspic

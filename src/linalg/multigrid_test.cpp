@@ -166,6 +166,23 @@ TEST(Multigrid, ConvergesForRodAndSheet) {
   }
 }
 
+// Half of the aggregates have no functions.
+TEST(Multigrid, ConvergesWithRowsOfAngles) {
+  const Matrix H = spring_lattice({.nx = 24, .ny = 8, .nz = 8, .stiffness = 10});
+  H.pattern->angle_rows = H.rows() / 2;
+  EXPECT_GE(made(H.values).level_count(), 2);
+  const auto taken = iterations(H.values, 1e-6);
+  ASSERT_TRUE(taken);
+  EXPECT_LE(*taken, 60);
+}
+
+TEST(Multigrid, HasNoCoarseLevelWithoutFunctions) {
+  const Matrix H = spring_lattice({.nx = 24, .ny = 8, .nz = 8, .stiffness = 10});
+  H.pattern->angle_rows = H.rows();
+  EXPECT_EQ(made(H.values).level_count(), 1);
+  EXPECT_TRUE(iterations(H.values, 1e-6));
+}
+
 TEST(Multigrid, SolvesPinnedRowsExactly) {
   Matrix H = spring_lattice({.nx = 16, .ny = 6, .nz = 6, .stiffness = 100});
   for (int row = 0; row < H.rows(); row += 9) pin(H.values, row);

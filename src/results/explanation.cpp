@@ -183,7 +183,7 @@ class Explainer {
       if (!(speed <= most)) most = speed, fastest = static_cast<int>(i / 3);
     }
     return {"the energy at the start of the step is not a finite number",
-            vertex_name(model_, fastest) + " is fastest: " + text(most) + " m/s",
+            vertex_name(model_, model_.vertex_of_row(fastest)) + " is fastest: " + text(most) + " m/s",
             smaller_steps() + ", and look for forces, pins or velocities that are too large"};
   }
 

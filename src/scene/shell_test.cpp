@@ -94,6 +94,22 @@ TEST(Shell, EqualBitsForAnyThreadCount) {
   EXPECT_EQ(hashes[0], hashes[1]);
 }
 
+TEST(Shell, MultigridNeedsFewCycles) {
+  std::vector<double> last;
+  for (const char* linear : {"cholesky", "multigrid"}) {
+    Scene scene = load(kShellFlag, {"body.shape.rectangle.size=0.03", "solver.linear=\"" + std::string(linear) + "\"",
+                                    "solver.tolerance=1e-9"});
+    for (int i = 0; i < 2; ++i) {
+      const StepReport report = scene.simulation.step();
+      ASSERT_TRUE(is_success(report.status));
+      EXPECT_LE(report.cycles, 12 * report.factorizations) << linear;  // block_jacobi: over 60
+    }
+    const std::vector<double> q = positions(scene);
+    for (size_t i = 0; i < last.size(); ++i) EXPECT_NEAR(q[i], last[i], 1e-6) << i;
+    last = q;
+  }
+}
+
 TEST(Shell, HashContainsTheAngles) {
   Scene scene = load(kShellFlag);
   const std::uint64_t hash = scene.simulation.state_hash();
