@@ -1,6 +1,6 @@
 // Bending of thin sheets and shells that converges on any mesh. Each edge has an unknown angle xi between its normal
-// and the mean of the normals of its two triangles. A triangle has the half angles a = theta / 2 + xi, and its
-// neighbor a = theta / 2 - xi:
+// and the mean of the normals of its two triangles. One triangle has the half angle a = theta / 2 + xi at the edge, the
+// other one a = theta / 2 - xi:
 //   V = sum over triangles of (a - a0)' Q (a - a0) / 2,  Q = A B' D B,  B_k = l_k / A (nx^2, ny^2, 2 nx ny)
 // theta is the angle between both triangles (see hinge_angle.h). l, n and A are the lengths of the edges, their normals
 // in the rest plane, and the area. D is the plate stiffness. Small deflections are those of Morley's plate element.

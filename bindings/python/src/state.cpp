@@ -58,7 +58,7 @@ void refuse_velocities_of_pins(std::span<const double> velocity, const Model& mo
   }
 }
 
-// Appends the angles of shells, which Python does not see.
+// Appends the angles of shells, which are not in the arrays of Python.
 std::vector<double> with_angles(std::vector<double> vertices, const std::vector<double>& rows) {
   vertices.insert(vertices.end(), rows.begin() + static_cast<std::ptrdiff_t>(vertices.size()), rows.end());
   return vertices;
