@@ -64,7 +64,7 @@ void require_supported_body(const Value& body) {
 }  // namespace
 
 void require_supported(const Table& document) {
-  refuse_keys(document, {"contact", "obstacle"});
+  refuse_keys(document, {"contact", "obstacle", "attach"});
   const Value& time = *document.find("time");
   require_text(time, "integrator", {"backward_euler", "quasi_static"});
   require_number(time["adaptive"], "tolerance", 0);

@@ -16,6 +16,7 @@
 #include "dynamics/ledger.h"
 #include "dynamics/simulation_checks.h"
 #include "dynamics/state.h"
+#include "energy/attachment.h"
 #include "math/vectors.h"
 
 namespace aspic {
@@ -256,9 +257,13 @@ struct Simulation::Impl {
       if (least <= 0 && V->excludes_inversion() && is_success(report.status)) report.status = Status::inverted;
     }
     report.cavities.clear();
-    for (const auto& load : model.loads)
+    report.attachment_gap = 0;
+    for (const auto& load : model.loads) {
       if (const auto* cavity = dynamic_cast<const Cavity*>(load.get()))
         report.cavities.push_back(cavity->state(state.q, state.time));
+      if (const auto* attachment = dynamic_cast<const Attachment*>(load.get()))
+        report.attachment_gap = std::max(report.attachment_gap, attachment->largest_gap(state.q));
+    }
     report.state_hash = hash();
   }
 

@@ -178,6 +178,9 @@ std::vector<StepField>& fields() {
           {"friction_passes", "", "evaluations of lagged coefficients: friction, rims of pressures"}, kCount)),
       optional(count<&R::carries>(
           {"carries", "", "Newton directions along which bodies moved with obstacles before the iterations"}, kCount)),
+      optional(real<&R::attachment_gap>(
+          {"attachment_gap", "m", "largest gap of an attachment, beyond the kept distance for `gap = \"keep\"`"},
+          kMeasured)),
       optional(real<&R::mesh_stiffness>(
           {"mesh_stiffness", "1", "estimated excess of stiffness of the worst body; 0: not computed"}, kMeasured)),
       optional(real<&R::mesh_energy>({"mesh_energy", "J", "estimated energy above the minimum"}, kMeasured)),

@@ -18,6 +18,7 @@
 #include "scene/body_notes.h"
 #include "scene/body_sheet.h"
 #include "scene/placement.h"
+#include "scene/scene_attachments.h"
 #include "scene/scene_contact.h"
 #include "scene/schema.h"
 #include "scene/solver_options.h"
@@ -200,6 +201,7 @@ class SceneBuilder {
     add_wind(source_.document, model_);
     MeshLoader loader = mesh_loader();
     add_scene_contact(source_.document, loader, initial_positions(), model_);
+    add_attachments(source_.document, bodies_, model_, source_.notes);
     for (const PlacedBody& body : bodies_) note_parts(body, model_, source_.notes);
   }
 

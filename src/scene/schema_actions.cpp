@@ -226,6 +226,35 @@ void add_grab(Schema& s) {
                key("position", kNumbers, "position", Units{"m"}, kRequired)});
 }
 
+void add_attach(Schema& s) {
+  add_section(
+      s,
+      {"attach", "[[attach]]",
+       "Joins vertices of a body to the nearest points of another body, or of another place of the same one, by "
+       "springs: seams, and what is sewn or glued on. `attachment_gap` of steps.csv is the largest gap. Attach the "
+       "finer of two borders to the coarser. Contact keeps its distance between attached surfaces, too: there, use "
+       "`gap = \"keep\"`."},
+      {key("points", kTable, "the attached vertices", Members{"attach_points"}, kRequired),
+       key("to", kTable, "the target", Members{"attach_target"}, kRequired),
+       key("distance", kNumber,
+           "largest distance at time 0, beyond which a vertex is refused; default: mean edge of the "
+           "target",
+           Units{"m"}, kNotNegative),
+       key("gap", kText, "`close`: V = k/2 d^2 of the distance d, draws together; `keep`: V = k/2 (d - d at time 0)^2",
+           Choices{{"close", "keep"}}, Usual{"\"close\"", "seams close"}),
+       key("stiffness", kNumber,
+           "k of each vertex; default: that of the softer body, Young's modulus times thickness of "
+           "a sheet or mean edge of a solid",
+           Units{"N/m"}, kPositive)});
+  add_section(s, {"attach_points", "points = { ... } in [[attach]]", "The attached vertices."},
+              {key("body", kText, "name of the body", kRequired), where_key()});
+  Key target = where_key();
+  target.required = false;
+  target.meaning = "vertices; the target is the elements, edges and vertices between them; default: the whole body";
+  add_section(s, {"attach_target", "to = { ... } in [[attach]]", "The body to which the vertices are attached."},
+              {key("body", kText, "name of the body; the same one needs `where`", kRequired), target});
+}
+
 void add_loads(Schema& s) {
   add_section(
       s, {"traction", "[[body.traction]]", "A dead load: force per rest area, of fixed direction."},
@@ -283,6 +312,7 @@ void add_action_sections(Schema& s) {
   add_pin_and_spring(s);
   add_grab(s);
   add_loads(s);
+  add_attach(s);
 }
 
 }  // namespace aspic

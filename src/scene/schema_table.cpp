@@ -27,7 +27,8 @@ void add_scene(Schema& s) {
                key("solver", kTable, "minimization of each step", Members{"solver"}, Usual{"{}"}),
                key("wind", kTable, "moving air around sheets", Members{"wind"}),
                key("output", kTable, "output files", Members{"output"}, Usual{"{}"}),
-               key("body", kTables, "the bodies", Members{"body"}, kRequired)});
+               key("body", kTables, "the bodies", Members{"body"}, kRequired),
+               key("attach", kTables, "seams and other attachments of bodies", Members{"attach"})});
 }
 
 void add_wind(Schema& s) {
