@@ -179,7 +179,7 @@ std::vector<StepField>& fields() {
       optional(count<&R::carries>(
           {"carries", "", "Newton directions along which bodies moved with obstacles before the iterations"}, kCount)),
       optional(real<&R::attachment_gap>(
-          {"attachment_gap", "m", "largest gap of an attachment, beyond the kept distance for `gap = \"keep\"`"},
+          {"attachment_gap", "m", "largest difference of the distance of attached points from its rest length"},
           kMeasured)),
       optional(real<&R::mesh_stiffness>(
           {"mesh_stiffness", "1", "estimated excess of stiffness of the worst body; 0: not computed"}, kMeasured)),

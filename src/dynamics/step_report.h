@@ -106,7 +106,7 @@ struct StepReport : Work {  // work of all solves of the step and of this report
   double seconds = 0;                // wall time of the step
   double cpu_seconds = 0;            // CPU time of the process
   ContactCost contact_cost;
-  double attachment_gap = 0;  // largest gap of an Attachment among Model::loads, at the end [m]
+  double attachment_gap = 0;  // Attachment::largest_gap() of Model::loads at the end [m]
 };
 
 }  // namespace aspic

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "contact/barrier.h"
 #include "energy/attachment.h"
 #include "mesh/box_tree.h"
 #include "mesh/distance.h"
@@ -132,6 +133,7 @@ class AttachmentBuilder {
     require_near(table, body, target, vertices, found);
     const double stiffness = stiffness_of(table, of_points, of_target);
     const bool keeps_gap = table["gap"].text() == "keep";
+    const double closed = contact_distance(static_cast<int>(of_points), static_cast<int>(of_target));
     double largest = 0;
     for (size_t i = 0; i < vertices.size(); ++i) {
       AttachedVertex a{.vertex = body.model_vertex(vertices[i]), .stiffness = stiffness};
@@ -141,7 +143,7 @@ class AttachmentBuilder {
         a.weight[a.count] = found[i].weights[a.count] / sum;
         a.target[a.count++] = target.model_vertex(v);
       }
-      if (keeps_gap) a.rest_length = found[i].distance;
+      a.rest_length = keeps_gap ? found[i].distance : closed;
       largest = std::max(largest, found[i].distance);
       attached_.push_back(a);
     }
@@ -172,9 +174,8 @@ class AttachmentBuilder {
   static void require_disjoint(const Value& to, const PlacedBody& body, const std::vector<int>& vertices,
                                const std::vector<char>& is_target) {
     if (is_target.empty())
-      throw error_at(to.place, "body '" + body.name() +
-                                   "' is attached to itself, so that every vertex is already there; select the "
-                                   "other place by where in `to`");
+      throw error_at(to.place,
+                     "body '" + body.name() + "' is attached to itself; select the other place with where in `to`");
     for (const int v : vertices)
       if (is_target[v])
         throw error_at(to["where"].place, "vertex " + std::to_string(body.user_vertex(v)) + " of body '" + body.name() +
@@ -199,6 +200,14 @@ class AttachmentBuilder {
                        ", as " + std::to_string(std::count_if(found.begin(), found.end(), is_far)) + " of " +
                        std::to_string(found.size()) + " vertices are (select fewer, move the bodies closer, or set " +
                        "distance = " + three_digits(1.01 * largest) + ")");
+  }
+
+  // Returns the distance at which contact of two bodies begins, where it does not push attached places apart; 0 without
+  // contact.
+  double contact_distance(int a, int b) const {
+    if (!model_.contact) return 0;
+    const ContactLaw &first = model_.contact->laws()(a, b), &second = model_.contact->laws()(b, a);
+    return std::max(first.offset + first.reach, second.offset + second.reach);
   }
 
   // Returns Young's modulus times the thickness of a sheet, or times the mean edge of a solid; 0 without elasticity.

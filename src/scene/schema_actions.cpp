@@ -118,7 +118,7 @@ void add_fibres(Schema& s) {
 
 void add_where(Schema& s) {
   s.sections.push_back(
-      {"where", "where = ... of a pin, spring, traction, pressure or force",
+      {"where", "where = ... of a pin, spring, traction, pressure, force or attachment",
        "A selection by rest position: vertices, boundary triangles or tets (by centroid). A string is a formula of "
        "X, Y, Z (or x, y, z) that is nonzero where selected: \"y > 0.9 && x < 0\"."});
   add_keys(
@@ -230,27 +230,31 @@ void add_attach(Schema& s) {
   add_section(
       s,
       {"attach", "[[attach]]",
-       "Joins vertices of a body to the nearest points of another body, or of another place of the same one, by "
-       "springs: seams, and what is sewn or glued on. `attachment_gap` of steps.csv is the largest gap. Attach the "
-       "finer of two borders to the coarser. Contact keeps its distance between attached surfaces, too: there, use "
-       "`gap = \"keep\"`."},
+       "Joins vertices of a body by springs to the nearest points of another body, or of another place of the same "
+       "one: "
+       "seams, and what is sewn or glued on. `attachment_gap` of steps.csv is the largest gap. Attach the finer of two "
+       "borders to the coarser one. With contact, bodies must start apart, and seams close to the distance at which "
+       "contact begins."},
       {key("points", kTable, "the attached vertices", Members{"attach_points"}, kRequired),
        key("to", kTable, "the target", Members{"attach_target"}, kRequired),
        key("distance", kNumber,
-           "largest distance at time 0, beyond which a vertex is refused; default: mean edge of the "
-           "target",
+           "largest distance of a vertex from the target at time 0; beyond, the scene is refused; default: mean edge "
+           "of "
+           "the target's surface",
            Units{"m"}, kNotNegative),
-       key("gap", kText, "`close`: V = k/2 d^2 of the distance d, draws together; `keep`: V = k/2 (d - d at time 0)^2",
-           Choices{{"close", "keep"}}, Usual{"\"close\"", "seams close"}),
+       key("gap", kText, "`close` draws together: rest length 0; `keep`: the distance at time 0, in any direction",
+           Choices{{"close", "keep"}}, Usual{"\"close\"", "a seam closes"}),
        key("stiffness", kNumber,
-           "k of each vertex; default: that of the softer body, Young's modulus times thickness of "
-           "a sheet or mean edge of a solid",
+           "k of each vertex, V = k/2 (distance - rest length)^2; default: that of the softer body, Young's modulus "
+           "times "
+           "the thickness of a sheet or the mean edge of a solid",
            Units{"N/m"}, kPositive)});
   add_section(s, {"attach_points", "points = { ... } in [[attach]]", "The attached vertices."},
               {key("body", kText, "name of the body", kRequired), where_key()});
   Key target = where_key();
   target.required = false;
-  target.meaning = "vertices; the target is the elements, edges and vertices between them; default: the whole body";
+  target.meaning =
+      "vertices: only elements, edges and vertices with all corners among them are the target; default: the whole body";
   add_section(s, {"attach_target", "to = { ... } in [[attach]]", "The body to which the vertices are attached."},
               {key("body", kText, "name of the body; the same one needs `where`", kRequired), target});
 }

@@ -19,6 +19,7 @@ export interface StepFields {
   friction_loss: MaybeNumber; // share of friction in damping_loss [J]
   friction_creep: MaybeNumber; // largest slip of a sticking contact in this step [m]
   friction_residual: MaybeNumber; // change of friction by the last update of normal forces [N]
+  attachment_gap: MaybeNumber; // largest difference of the distance of attached points from its rest length [m]
   mesh_stiffness: MaybeNumber; // estimated excess of stiffness of the worst body; 0: not computed [1]
   mesh_energy: MaybeNumber; // estimated energy above the minimum [J]
   mesh_worst_tet: number; // tet with its largest density; -1: none
@@ -28,7 +29,7 @@ export interface StepFields {
   load_work: MaybeNumber; // share of moving spring targets and time-dependent loads in pin_work [J]
   muscle_work: MaybeNumber; // share of muscles in pin_work [J]
   obstacle_work: MaybeNumber; // work of moving obstacles [J]
-  nonconservative_work: MaybeNumber; // work of pressures on open patches beyond the change of their potential [J]
+  nonconservative_work: MaybeNumber; // work of wind, and of pressures on open patches beyond the change of their potential [J]
   damping_loss: MaybeNumber; // energy dissipated by damping and friction [J]
   viscoelastic_loss: MaybeNumber; // share of viscoelastic branches in damping_loss [J]
   numerical_loss: MaybeNumber; // energy dissipated by the integrator [J]
@@ -60,6 +61,7 @@ export const kUnknownStep: StepFields = {
   friction_loss: null,
   friction_creep: null,
   friction_residual: null,
+  attachment_gap: null,
   mesh_stiffness: null,
   mesh_energy: null,
   mesh_worst_tet: 0,
