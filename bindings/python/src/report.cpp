@@ -178,6 +178,7 @@ void bind_report(py::module_& m) {
       .def_readonly("min_det_F", &Report::min_det_F)
       .def_readonly("contacts", &Report::contacts)
       .def_readonly("min_gap", &Report::min_gap, "Smallest distance of a contact [m].")
+      .def_readonly("attachment_gap", &Report::attachment_gap, "Largest gap of an attachment [m].")
       .def_readonly("kinetic", &Report::kinetic, "[J]")
       .def_property_readonly("potential", &potential_of, "Energy of each term of V by name [J].")
       .def_readonly("potential_total", &Report::potential_total, "[J]")
