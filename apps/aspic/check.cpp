@@ -186,10 +186,21 @@ void print_quality(const TetMesh& mesh) {
 }
 void print_quality(const TriMesh&) {}  // findings alone describe a surface
 
+std::vector<Finding> findings_of(const TetMesh& mesh) { return diagnose(mesh); }
+// What is an error of the surface of a solid may be none of a sheet.
+std::vector<Finding> findings_of(const TriMesh& mesh) {
+  std::vector<Finding> findings = diagnose(mesh);
+  if (!is_sheet(mesh)) return findings;
+  for (Finding& f : findings)
+    for (const char* name : {"planar_mesh", "sheet", "non_manifold_edges", "inconsistent_orientation"})
+      if (f.name == name) f.severity = Severity::note;
+  return findings;
+}
+
 template <class Mesh>
 std::vector<Finding> examine(const Mesh& mesh) {
   print_quality(mesh);
-  std::vector<Finding> findings = diagnose(mesh);
+  std::vector<Finding> findings = findings_of(mesh);
   for (const Finding& finding : findings) print(finding);
   if (findings.empty()) fmt::print("no errors found\n");
   return findings;
@@ -278,6 +289,9 @@ int check_mesh_error(const CheckArguments& arguments) {
   std::vector<std::string> overrides = arguments.overrides;
   overrides.emplace_back("time.integrator=quasi_static");
   Scene scene = load_scene(arguments.input, {.overrides = overrides, .mesher = {}});
+  if (!scene.simulation.model().mesh.sheet.empty())
+    throw InvalidInput(
+        fmt::format("{}: there is no estimate for sheets; compare two meshes", arguments.input.string()));
   const double step = scene.simulation.options().h * std::max(1, scene.steps) / kSteps;
   overrides.push_back(fmt::format("time.step={}", step));
   scene = load_scene(arguments.input, {.overrides = overrides, .mesher = {}});

@@ -27,6 +27,7 @@ struct ContactPart {
   double offset = 0;         // distance of the surface from the points: half the thickness of a sheet, or the radius of
                              // a capsule or a sphere [m]
   bool is_round = false;     // a capsule or a sphere
+  bool is_sheet = false;     // encloses nothing
   double self_offset = 0;    // least gap of a sheet to itself, see allowed_self_offset() [m]
   ObstacleMotion motion;     // motion of an obstacle; empty: at rest
 };

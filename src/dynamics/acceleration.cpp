@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "energy/wind.h"
+
 namespace aspic {
 namespace {
 
@@ -13,7 +15,15 @@ constexpr double kAccelerationTolerance = 1e-12;  // the mass matrix is well con
 void Acceleration::add_damping(const StepTools& tools, const MotionPoint& at, double h, double scale) {
   for (size_t i = 0; i < at.q.size(); ++i) drift_[i] = at.q[i] + h * at.v[i];
   for (const ActiveTerm& D : tools.E.terms().damping())
-    if (!dynamic_cast<const PressureRim*>(&D.energy())) D.add_gradient(drift_, scale, damping_);
+    if (!dynamic_cast<const PressureRim*>(&D.energy()) && &D.energy() != tools.model.wind)
+      D.add_gradient(drift_, scale, damping_);
+}
+
+// Wind acts on a sheet at rest, so central differences would lose it.
+void Acceleration::add_wind(const StepTools& tools, const MotionPoint& at) {
+  for (size_t i = 0; i < at.q.size(); ++i) drift_[i] = at.q[i] + tools.h * at.v[i];
+  for (const ActiveTerm& D : tools.E.terms().damping())
+    if (&D.energy() == tools.model.wind) D.add_gradient(drift_, 1, damping_);
 }
 
 bool Acceleration::solve(const StepTools& tools, const MotionPoint& at, std::span<double> acc, StepForces& forces,
@@ -30,6 +40,7 @@ bool Acceleration::solve(const StepTools& tools, const MotionPoint& at, std::spa
     add_damping(tools, at, tools.h, 0.5);
     add_damping(tools, at, -tools.h, -0.5);
   }
+  if (tools.model.wind) add_wind(tools, at);
   std::fill(drift_.begin(), drift_.end(), 0.0);  // from here on the forces of rims, which do not depend on v
   tools.E.terms().add_rim_gradient(at.q, 1, drift_);
   for (size_t i = 0; i < n; ++i) damping_[i] += drift_[i];

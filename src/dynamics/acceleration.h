@@ -33,6 +33,7 @@ class Acceleration {
 
  private:
   void add_damping(const StepTools& tools, const MotionPoint& at, double h, double scale);
+  void add_wind(const StepTools& tools, const MotionPoint& at);
   SolveReport solve_mass(const StepTools& tools, std::span<const double> force, std::span<double> acc);
 
   std::unique_ptr<LinearSolver> solver_;

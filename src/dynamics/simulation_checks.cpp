@@ -116,12 +116,18 @@ void require_finite_energy(const Model& model, std::span<const double> x) {
     std::fill(fields.det_F.begin(), fields.det_F.end(), 1.0);
     model.elasticity[body]->evaluate(x, fields);
     std::vector<int> inverted;
-    for (int t = 0; t < model.mesh.tet_count(); ++t)
-      if (!(fields.det_F[t] > 0)) inverted.push_back(t);
+    const BodyRange& range = model.bodies[body];
+    for (int e = range.first_element(model.mesh); e < range.first_element(model.mesh) + range.element_count(); ++e)
+      if (!(fields.det_F[e] > 0)) inverted.push_back(e);
     if (inverted.empty())
       throw InvalidInput(
           "the initial shape has infinite energy: its strain exceeds the range of the material; choose a "
           "smaller initial deformation or another material");
+    if (range.is_sheet())
+      throw BadInitialState(BadInitialState::Kind::collapsed_triangles,
+                            "the initial shape has infinite energy: " + std::to_string(inverted.size()) +
+                                " triangles are collapsed (" + listed(model.numbering.tet.to_user(inverted)) + ")",
+                            "choose a smaller initial deformation");
     throw BadInitialState(BadInitialState::Kind::inverted_tets,
                           "the initial shape has infinite energy: " + std::to_string(inverted.size()) +
                               " tets are inverted or flat (" + listed(model.numbering.tet.to_user(inverted)) + ")",

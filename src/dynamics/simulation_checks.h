@@ -10,7 +10,7 @@ namespace aspic {
 
 // An initial state whose remedy user interfaces can describe by the names of their own options.
 struct BadInitialState : InvalidInput {
-  enum class Kind { inverted_tets, no_mass, touches_itself };
+  enum class Kind { inverted_tets, collapsed_triangles, no_mass, touches_itself };
 
   BadInitialState(Kind k, const std::string& why, const std::string& remedy)
       : InvalidInput(why + "; " + remedy), kind(k), cause(why) {}

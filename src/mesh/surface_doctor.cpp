@@ -112,7 +112,7 @@ void examine_open_edges(const TriMesh& mesh, const SurfaceTopology& surface, Fin
       "the surface is open: " + std::to_string(surface.open_edges) + " edges around " + std::to_string(surface.holes) +
           (surface.holes == 1 ? " hole" : " holes") + " belong to only one triangle (these triangles are listed)",
       "close the holes in the source model; aspic mesh --fill-holes closes small ones, aspic mesh --rebuild wraps "
-      "the surface in a closed one",
+      "the surface in a closed one; for cloth, set shell.thickness of the body",
       surface.open};
   const int left = topology(merged.triangles, merged.vertex_count()).open_edges;
   if (left < surface.open_edges) {

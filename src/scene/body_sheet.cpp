@@ -12,6 +12,7 @@
 #include "energy/wind.h"
 #include "io/mesh_file.h"
 #include "mesh/box.h"
+#include "mesh/close_corners.h"
 #include "mesh/sheet_shapes.h"
 #include "mesh/surface.h"
 #include "mesh/topology.h"
@@ -80,7 +81,7 @@ void check(const TriMesh& mesh, const Value& body, const Place& place) {
   }
   if (!flat.empty())
     throw error_at(place, which + std::to_string(flat.size()) + " triangles have no area" + list_of(flat) +
-                              "; remove them in the source model, or with aspic check MESH --repair -o MENDED");
+                              "; flip or collapse their edges in the source model");
   if (const std::vector<int> repeated = repeated_elements(mesh.triangles); !repeated.empty())
     throw error_at(place, which + std::to_string(repeated.size()) + " triangles have the vertices of an earlier one" +
                               list_of(repeated) + "; remove them, or run aspic check MESH --repair -o MENDED");
@@ -160,6 +161,14 @@ BodyMesh make_sheet_mesh(Value& body, MeshLoader& loader) {
   if (const std::string why = loader.why_not(surface.triangle_count()); !why.empty())
     throw error_at(body.place, why + " (choose a coarser mesh)");
   loader.tets += surface.triangle_count();
+  const std::string which = "body '" + body["name"].text() + "': ";
+  const std::vector<int> first = first_agreeing_corner(surface);
+  int open = 0;
+  for (int v = 0; v < surface.vertex_count(); ++v) open += first[v] != v;
+  if (open > 0)
+    loader.notes.push_back(which + std::to_string(open) +
+                           " vertices of open edges lie on others, without a seam between "
+                           "them; aspic check MESH --repair merges them");
   aspic::place(placement_of(body), surface.vertices);
   TetMesh mesh{.rest = surface.vertices, .tets = {}, .region = {}};
   mesh.sheet = surface.triangles;

@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "base/error.h"
+#include "base/formatted.h"
 #include "io/mesh_file.h"
 #include "mesh/box.h"
 #include "mesh/doctor.h"
@@ -59,35 +60,40 @@ std::vector<Choice> choices_of_space(double scale, double extent) {
   return {{"scale", text}, {"gravity", "gravity = 9.81 m/s^2 along -y: y is up (gravity=[0,0,-9.81] for z)"}};
 }
 
-std::optional<TriMesh> sheet_in(const std::filesystem::path& path) {
+std::optional<TriMesh> sheet_in(const std::filesystem::path& path, bool has_shell) {
   const std::variant<TetMesh, TriMesh> mesh = read_mesh(path.string());
   const TriMesh* surface = std::get_if<TriMesh>(&mesh);
   if (!surface || surface->triangles.empty()) return std::nullopt;
   const double extent = longest_side(bounding_box(surface->vertices));
-  if (!(extent > 0) || !std::isfinite(extent) || !is_sheet(*surface)) return std::nullopt;
+  if (!(extent > 0) || !std::isfinite(extent) || !(has_shell || is_sheet(*surface))) return std::nullopt;
   return *surface;
 }
 
-Defaults defaults_for_sheet(const std::filesystem::path& path, const TriMesh& sheet, double scale) {
-  const double extent = longest_side(bounding_box(sheet.vertices));
+Defaults defaults_for_sheet(const std::filesystem::path& path, const TriMesh& sheet, const SheetPlacement& placement) {
+  const double extent = longest_side(bounding_box(sheet.vertices)), scale = placement.scale;
+  const double g = norm(placement.gravity);
+  const Vec3d up = g > 0 ? (-1 / g) * placement.gravity : Vec3d{{0, 1, 0}};
   std::vector<Vec3d> X = sheet.vertices;
   for (Vec3d& x : X) x = scale * x;
   const Box box = bounding_box(X);
   const double size = longest_side(box);
+  const std::string thickness = formatted("%.1g", 1e-3 * size);
   Defaults d;
   d.toml = "gravity = [0.0, -9.81, 0.0]\n[time]\nstep = 0.01\nduration = 2.0\n[solver]\ntolerance = 1e-4\n[contact]\n" +
            std::string("friction = 0.3\n[[body]]\nmesh = ") + toml_string(path.string()) +
-           "\nscale = " + number_text(scale) + "\nshell = { thickness = " + number_text(one_digit(1e-3 * size)) +
+           "\nscale = " + number_text(scale) + "\nshell = { thickness = " + thickness +
            " }\nmaterial = { young = 1e6, poisson = 0.3, density = 300.0 }\n";
   d.choices = choices_of_space(scale, extent);
-  d.choices.push_back({"shell", "shell.thickness = " + number_text(one_digit(1e-3 * size)) +
+  d.choices.push_back({"shell", "shell.thickness = " + thickness +
                                     " m: the mesh is a sheet, and becomes cloth of a thousandth of its size"});
   d.choices.push_back({"material", "material: young = 1e6 Pa, poisson = 0.3, density = 300 kg/m^3: light fabric"});
   d.choices.push_back({"contact.friction", "contact.friction = 0.3: cotton"});
-  if (box.upper[1] - box.lower[1] < kLevel * size) {
+  double low = INFINITY, high = -INFINITY;
+  for (const Vec3d& x : X) low = std::min(low, dot(up, x)), high = std::max(high, dot(up, x));
+  if (high - low < kLevel * size) {
     const double radius = 0.25 * size;
-    const Vec3d center{
-        {(box.lower[0] + box.upper[0]) / 2, box.lower[1] - 1.1 * radius, (box.lower[2] + box.upper[2]) / 2}};
+    const Vec3d middle = 0.5 * (box.lower + box.upper);
+    const Vec3d center = middle + (low - 1.1 * radius - dot(up, middle)) * up;
     d.toml += "[[obstacle]]\nname = \"ball\"\nsphere = { center = " + vector_text(center) +
               ", radius = " + number_text(radius) + " }\n";
     d.choices.push_back({"obstacle", "obstacle: a ball under the sheet, which is level and falls onto it"});

@@ -28,9 +28,14 @@ double one_digit(double x);  // rounds to one significant digit
 // The choices of scale and gravity. `extent`: the largest one in units of the file.
 std::vector<Choice> choices_of_space(double scale, double extent);
 
-// Returns the surface of a file that is a sheet.
-std::optional<TriMesh> sheet_in(const std::filesystem::path& path);
+// Returns the surface of a file that is a sheet, or of any file of triangles if it `has_shell`.
+std::optional<TriMesh> sheet_in(const std::filesystem::path& path, bool has_shell);
+// How a sheet is placed: its scale, and the direction of gravity.
+struct SheetPlacement {
+  double scale;
+  Vec3d gravity;
+};
 // A sheet that is level falls onto a ball; others hang from their highest vertices.
-Defaults defaults_for_sheet(const std::filesystem::path& path, const TriMesh& sheet, double scale);
+Defaults defaults_for_sheet(const std::filesystem::path& path, const TriMesh& sheet, const SheetPlacement& placement);
 
 }  // namespace aspic

@@ -217,9 +217,9 @@ SceneSource scene_of_mesh(const std::filesystem::path& path, const std::vector<s
   const Table first = read(minimal);
   const Value& body = first.find("body")->array().front();
   const bool has_scale = is_overridden("scale", overrides) && body["scale"].is_number();
-  if (const std::optional<TriMesh> sheet = sheet_in(path)) {
+  if (const std::optional<TriMesh> sheet = sheet_in(path, is_overridden("shell", overrides))) {
     const double scale = has_scale ? body["scale"].number() : guessed_scale(sheet->vertices);
-    const Defaults defaults = defaults_for_sheet(path, *sheet, scale);
+    const Defaults defaults = defaults_for_sheet(path, *sheet, {scale, first.find("gravity")->vector()});
     return {read(defaults.toml), path.stem().string(), file, {}, notes_of(defaults, overrides)};
   }
   const Value* size = body.find("mesh_size");

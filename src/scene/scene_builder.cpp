@@ -256,6 +256,8 @@ std::string remedy_in_scene(BadInitialState::Kind kind) {
     case BadInitialState::Kind::inverted_tets:
       return "set material.model = \"stable_neo_hookean\", which tolerates inversion, or choose a smaller initial "
              "deformation";
+    case BadInitialState::Kind::collapsed_triangles:
+      return "choose a smaller initial deformation";
     case BadInitialState::Kind::no_mass:
       return "remove them (aspic check MESH --repair) or pin them";
     case BadInitialState::Kind::touches_itself:

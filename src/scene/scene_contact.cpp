@@ -66,6 +66,7 @@ void add_body(ContactPart part, const Model& model, const BodyRange& body, Conta
     return contact.add(part, model.mesh.rest, boundary_triangles(model.mesh, body.first_tet, body.tet_count), rows);
   const double thickness = model.mesh.thickness[body.first_triangle];
   part.offset = thickness / 2;
+  part.is_sheet = true;
   contact.add(part, model.mesh.rest, std::span(model.mesh.sheet).subspan(body.first_triangle, body.triangle_count),
               rows);
   ContactPart& own = contact.parts.back();
@@ -286,9 +287,10 @@ void add_scene_contact(Table& document, MeshLoader& loader, const std::vector<do
   add_contact(std::move(contact), given, creep, model);
   note_reaches(*model.contact, loader);
   for (const ContactPart& part : model.contact->mesh().parts)
-    if (part.self_offset < 2 * part.offset && !part.is_obstacle)
-      loader.notes.push_back("body '" + part.name + "' keeps " + three_digits(part.self_offset) +
-                             " m from itself instead of its thickness, because its triangles are smaller");
+    if (part.is_sheet && part.self_offset < 0.99 * 2 * part.offset)
+      loader.notes.push_back(
+          "body '" + part.name + "' keeps " + three_digits(part.self_offset) +
+          " m from itself instead of its thickness, because that is .4 of the distance of its parts at rest");
   const ContactMesh& mesh = model.contact->mesh();
   for (const auto& [inner, outer, place] : enclosed_parts(mesh, model.contact->points(q, 0)))
     if (mesh.parts[outer].is_obstacle)

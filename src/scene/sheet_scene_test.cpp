@@ -193,12 +193,36 @@ TEST(SheetScene, RunsWithoutManifoldOrTwoSides) {
   }
 }
 
+// A sheet that is fixed everywhere feels the drag on a flat plate, whatever the integrator evaluates.
+TEST(SheetScene, WindPushesEquallyInAllIntegrators) {
+  for (const std::string integrator : {"backward_euler", "bdf2", "tr_bdf2", "trapezoid", "midpoint", "quasi_static"}) {
+    Scene scene = load("gravity = [0, 0, 0]\n[wind]\nvelocity = [0, 0, 5]\n" + kSheet + kShell +
+                           "[[body.pin]]\nname = \"all\"\nwhere = \"all\"\n",
+                       {"time.integrator=" + integrator});
+    const StepReport report = scene.simulation.step();
+    EXPECT_NEAR(report.resultants.pins[0].force[2], -0.5 * 1.2 * 1.2 * 25 * 0.16, 1e-9) << integrator;
+  }
+}
+
+TEST(SheetScene, ClosedSheetIsHollow) {
+  const std::string ball = "[contact]\n[[body]]\nname = \"skin\"\nshape = { sphere = { radius = 0.2, size = 0.1 } }\n" +
+                           kShell + "[[body]]\nname = \"core\"\nshape = { sphere = { radius = 0.1, size = 0.1 } }\n";
+  EXPECT_EQ(refusal(ball), "");
+}
+
+TEST(SheetScene, CollapsedStartIsRefused) {
+  EXPECT_THAT(refusal(kSheet + kShell + "deform = { scale = [0, 1, 1] }\n"),
+              AllOf(HasSubstr("triangles are collapsed (0, 1,"), HasSubstr("smaller initial deformation")));
+}
+
 TEST(SheetScene, SheetAloneBecomesAScene) {
   const TestFolder folder;
   const std::string level = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 2 3\nf 1 3 4\n";
   const Scene falls = load_scene(folder.write("level.obj", level));
   EXPECT_TRUE(falls.simulation.model().contact);
   EXPECT_TRUE(falls.simulation.model().pins.empty());
+  const Scene turned = load_scene(folder.path() / "level.obj", {.overrides = {"gravity=[0, 0, -9.81]"}});
+  EXPECT_EQ(turned.simulation.model().pins.size(), 1u);  // upright under this gravity
   const Scene hangs = load_scene(folder.write("upright.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n"));
   EXPECT_EQ(hangs.simulation.model().pins.size(), 1u);
 }
