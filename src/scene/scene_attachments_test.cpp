@@ -117,9 +117,9 @@ TEST(SceneAttachments, ResolvedSceneHasEqualBitsForThreads) {
 }
 
 TEST(SceneAttachments, RefusesUnknownBodiesAndEmptySelections) {
-  const std::string seam = "[[attach]]\npoints = { body = \"front\", where = \"x > 9\" }\nto = { body = \"bakc\" }\n";
+  const std::string seam = "[[attach]]\npoints = { body = \"front\", where = \"x > 9\" }\nto = { body = \"backk\" }\n";
   const std::string bodies = attached_sheet("front", {}) + attached_sheet("back", {{0, 0, 0.01}});
-  EXPECT_THAT(refusal(bodies + seam), AllOf(HasSubstr("beam.toml:15:15: body = \"bakc\"; there is no such body"),
+  EXPECT_THAT(refusal(bodies + seam), AllOf(HasSubstr("beam.toml:15:15: body = \"backk\"; there is no such body"),
                                             HasSubstr("did you mean 'back'?")));
   EXPECT_THAT(refusal(bodies + seam, {"attach.to.body=back"}), HasSubstr("selects no vertex of body 'front'"));
 }
