@@ -271,6 +271,10 @@ int check_scene(const CheckArguments& arguments) {
   bool wrong = false;
   const TetMesh all = to_user(model.numbering, model.mesh);
   for (const BodyRange& body : model.bodies) {
+    if (body.is_rod()) {
+      fmt::print("\n{}: {} vertices, {} segments\n", body.name, body.vertex_count, body.segment_count);
+      continue;
+    }
     if (body.is_sheet()) {
       fmt::print("\n{}: {} vertices, {} triangles\n", body.name, body.vertex_count, body.triangle_count);
       continue;

@@ -11,7 +11,8 @@ void PinSet::set(Shared pins) {
   now_ = std::move(pins);
   pinned_.assign(pinned_.size(), 0);
   for (const Pin& pin : *now_)
-    for (const int v : pin.vertices) pinned_[v] = 1;
+    for (const int v : pin.vertices)
+      if (v < static_cast<int>(pinned_.size())) pinned_[v] = 1;
 }
 
 std::vector<Pin> PinSet::painted(const std::vector<int>& vertices, bool pinned, Positions x) const {
@@ -20,7 +21,7 @@ std::vector<Pin> PinSet::painted(const std::vector<int>& vertices, bool pinned, 
   std::vector<Pin> pins;
   for (const Pin& old : *now_) {
     Pin kept = old;
-    if (!pinned) std::erase_if(kept.vertices, [&](int v) { return chosen[v]; });
+    if (!pinned) std::erase_if(kept.vertices, [&](int v) { return v < static_cast<int>(chosen.size()) && chosen[v]; });
     if (!kept.vertices.empty()) pins.push_back(std::move(kept));
   }
   for (int v = 0; pinned && v < static_cast<int>(chosen.size()); ++v) {

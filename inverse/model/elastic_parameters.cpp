@@ -9,8 +9,8 @@ namespace aspic {
 
 ElasticParameters::ElasticParameters(const Model& model) : start_{0}, tet_start_{0} {
   ASPIC_CHECK(model.elasticity.size() == model.bodies.size());
-  if (!model.mesh.sheet.empty())
-    throw InvalidInput("the scene has sheets; derivatives by material parameters need bodies of tets");
+  if (!model.mesh.sheet.empty() || !model.mesh.rods.empty())
+    throw InvalidInput("the scene has sheets or rods; derivatives by material parameters need bodies of tets");
   for (size_t k = 0; k < model.elasticity.size(); ++k) {
     terms_.push_back(model.elasticity[k].get());
     derivatives_.push_back(derivatives_of(*terms_[k]));

@@ -41,6 +41,8 @@ std::string vertex_name(const Model& model, int vertex) {
                &BodyRange::vertex_count);
 }
 std::string tet_name(const Model& model, int tet) {
+  if (const int segment = tet - model.mesh.first_segment(); segment >= 0)
+    return named(model, "segment", segment, &BodyRange::first_segment, &BodyRange::segment_count);
   if (const int triangle = tet - model.mesh.tet_count(); triangle >= 0)
     return named(model, "triangle", triangle, &BodyRange::first_triangle, &BodyRange::triangle_count);
   return named(model, "tet", model.numbering.tet.to_user(tet), &BodyRange::first_tet, &BodyRange::tet_count);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "base/parallel.h"
 #include "contact/barrier.h"
@@ -52,6 +53,12 @@ std::vector<double> unit_stiffness(const TetMesh& mesh) {
       const double four_areas = 2 * norm(cross(B - A, C - A));
       if (four_areas > 0) stiffness[mesh.sheet[t][k]] += mesh.thickness[t] * squared_norm(C - B) / four_areas;
     }
+  for (size_t s = 0; s < mesh.rods.size(); ++s) {
+    const auto& [a, b] = mesh.rods[s];
+    const double length = norm(mesh.rest[b] - mesh.rest[a]);
+    for (const int v : {a, b})
+      if (length > 0) stiffness[v] += std::numbers::pi * mesh.radius[s] * mesh.radius[s] / length;
+  }
   return stiffness;
 }
 

@@ -22,6 +22,12 @@ std::vector<std::string> InternalTerms::names() const {
   return names;
 }
 
+std::vector<double> InternalTerms::initial(Positions x) const {
+  std::vector<double> z(size_);
+  for (const Term& term : terms_) term.variables->write_initial(x, part(term, std::span(z)));
+  return z;
+}
+
 void InternalTerms::begin(std::span<ActiveTerm> damping, const StepContext& step, std::span<const double> z,
                           double duration) const {
   for (const Term& term : terms_) damping[term.index].begin_step(step);
@@ -83,7 +89,7 @@ std::vector<double> InternalTerms::from_user(std::span<const double> z, const Re
 
 void InternalTerms::require_support(const IntegratorFacts& integrator) const {
   if (empty() || integrator.is_backward_euler || integrator.is_static()) return;
-  throw InvalidInput("integrator = '" + std::string(integrator.name) + "' does not advance the stresses of '" +
+  throw InvalidInput("integrator = '" + std::string(integrator.name) + "' does not advance the internal variables of '" +
                      terms_[0].name + "'; choose backward_euler, or quasi_static without inertia");
 }
 

@@ -20,6 +20,7 @@ class InternalTerms {
   bool empty() const { return terms_.empty(); }
   size_t size() const { return size_; }    // number of internal variables
   std::vector<std::string> names() const;  // of the terms
+  std::vector<double> initial(Positions x) const;  // at the start of a simulation at x
 
   // `damping`: the terms of Model::damping with their contexts.
   void begin(std::span<ActiveTerm> damping, const StepContext& step, std::span<const double> z, double duration) const;

@@ -524,6 +524,8 @@ MeshErrorEstimate estimate_mesh_error(const MeshErrorInput& input, const StopTok
     none.reason = "order = 2 (its error is 0 to 4 % with two tets across, more with one)";
   } else if (!input.model.mesh.sheet.empty()) {
     none.reason = "the scene has sheets";
+  } else if (!input.model.mesh.rods.empty()) {
+    none.reason = "the scene has rods";
   } else if (gigabytes > available) {
     none.reason = formatted("quadratic tets need about %.2g GB; %.2g GB of memory are free", gigabytes, available);
   } else {

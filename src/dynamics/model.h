@@ -21,16 +21,22 @@ class Barrier;
 class Friction;
 class Wind;
 
-// Range of a body in the mesh. Its vertices and elements are consecutive. A body has tets, or is a sheet.
+// Range of a body in the mesh. Its vertices and elements are consecutive. A body has tets, or is a sheet or a rod.
 struct BodyRange {
   std::string name;  // in reports and files
   int first_vertex = 0, vertex_count = 0;
   int first_tet = 0, tet_count = 0;
   int first_triangle = 0, triangle_count = 0;  // in TetMesh::sheet
 
+  int first_segment = 0, segment_count = 0;    // in TetMesh::rods
+
   bool is_sheet() const { return triangle_count > 0; }
-  int first_element(const TetMesh& mesh) const { return is_sheet() ? mesh.tet_count() + first_triangle : first_tet; }
-  int element_count() const { return tet_count + triangle_count; }
+  bool is_rod() const { return segment_count > 0; }
+  int first_element(const TetMesh& mesh) const {
+    if (is_rod()) return mesh.first_segment() + first_segment;
+    return is_sheet() ? mesh.tet_count() + first_triangle : first_tet;
+  }
+  int element_count() const { return tet_count + triangle_count + segment_count; }
 };
 
 // Returns the position of a point at the time [s], given its position at the start [m].
@@ -40,7 +46,7 @@ using Motion = std::function<Vec3d(const Vec3d& start, double time)>;
 // the start, t). Requires that all directions that pins prescribe at one vertex are linearly independent.
 struct Pin {
   std::string name;                    // in reports
-  std::vector<int> vertices;           // in the order of the mesh
+  std::vector<int> vertices;           // in the order of the mesh; rows of angles for prescribed twist
   Motion motion;                       // empty: fixed at the start
   std::vector<Vec3d> directions = {};  // orthonormal; empty: all
 };
@@ -64,8 +70,8 @@ struct Model {
   const Wind* wind = nullptr;                              // one of the damping terms; null: no wind
   // If several processes hold the model, value(), min_det_F() and the counts of its terms are those of the whole model.
   Share share;
-  // Rows of angles at the edges of shells, after those of the vertices. They are part of the state and of the energies,
-  // but not of the mesh: files, selections and pins do not contain them. A part of a model, see Share, has none.
+  // Rows of angles at the edges of shells and the segments of rods, after those of the vertices. They are part of the state and of the energies,
+  // but not of the mesh: files and selections do not contain them, and only the pins of twist do. A part of a model, see Share, has none.
   std::vector<AngleRow> angle_rows;
 
   // Rows of the state and of the Hessian, each of 3 degrees of freedom: one per vertex, then the rows of angles.

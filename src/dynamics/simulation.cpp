@@ -27,7 +27,7 @@ bool is_finite(const StepReport& report) {
   return std::isfinite(report.residual) && std::isfinite(report.kinetic) && std::isfinite(report.potential_total);
 }
 
-// Empty: zeros.
+// Empty: those at the start of a simulation.
 void require_internal(const std::vector<double>& internal, size_t size) {
   if (!internal.empty() && internal.size() != size)
     throw InvalidInput("the state has " + std::to_string(internal.size()) + " internal variables; the model needs " +
@@ -53,8 +53,8 @@ struct Simulation::Impl {
     require_possible(options);
     if (!integrator->facts().is_static()) require_mass(model, *pins);
     E->terms().internal().require_support(integrator->facts());
-    if (state.internal.empty()) state.internal.assign(E->terms().internal().size(), 0.0);
     pins->place(state.time, state.q);
+    if (state.internal.empty()) state.internal = E->terms().internal().initial(state.q);
     require_finite_energy(model, state.q);
     require_apart(model, state, integrator->facts());
     if (model.contact && options.adaptive.tolerance > 0)
@@ -486,7 +486,7 @@ void Simulation::restore(const Snapshot& snapshot) {
   require_internal(snapshot.state.internal, impl_->E->terms().internal().size());
   if (impl_->adaptive) impl_->adaptive->set_level(snapshot.level);
   impl_->state = snapshot.state;
-  if (impl_->state.internal.empty()) impl_->state.internal.assign(impl_->E->terms().internal().size(), 0.0);
+  if (impl_->state.internal.empty()) impl_->state.internal = impl_->E->terms().internal().initial(impl_->state.q);
   impl_->start = snapshot.start;
   impl_->steps_taken = snapshot.steps_taken;
   impl_->outside_work = snapshot.outside_work;

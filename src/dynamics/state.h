@@ -1,4 +1,4 @@
-// Positions and velocities of all vertices, and angles of shells, at one time.
+// Positions and velocities of all vertices, and angles of shells and rods, at one time.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -11,11 +11,11 @@ namespace aspic {
 struct TetMesh;
 
 struct State {
-  // Positions [m] and velocities [m/s], 3 per row of the model: those of the vertices, then angles at edges times a
+  // Positions [m] and velocities [m/s], 3 per row of the model: those of the vertices, then angles of edges or segments times a
   // length and their rates, see Model::angle_rows.
   std::vector<double> q, qdot;
   double time = 0;  // [s]
-  // Internal variables of the damping terms, see InternalTerms; empty: none, or zeros at the start of a simulation.
+  // Internal variables of the damping terms, see InternalTerms; empty: none, or those at the start of a simulation.
   std::vector<double> internal = {};
 };
 

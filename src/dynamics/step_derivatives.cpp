@@ -27,6 +27,7 @@ double mean_edge(const TetMesh& mesh) {
   };
   for (const Tet& tet : mesh.tets) add(tet);
   for (const Triangle& triangle : mesh.sheet) add(triangle);
+  for (const Segment& segment : mesh.rods) add(segment);
   return count == 0 ? 1 : sum / count;
 }
 

@@ -43,6 +43,8 @@ std::vector<double> longest_edge(const TetMesh& mesh) {
       const double edge = norm(mesh.rest[a] - mesh.rest[b]);
       for (const int v : triangle) longest[v] = std::max(longest[v], edge);
     }
+  for (const auto& [a, b] : mesh.rods)
+    for (const int v : {a, b}) longest[v] = std::max(longest[v], norm(mesh.rest[a] - mesh.rest[b]));
   return longest;
 }
 

@@ -1,6 +1,7 @@
 // Interface of a dissipation potential with internal variables z, such as the stresses of Maxwell branches. They are
 // part of the state: D depends on those at the start of the step, and a step ends with new ones.
 #pragma once
+#include <algorithm>
 #include <cstddef>
 
 #include "energy/energy.h"
@@ -9,7 +10,7 @@ namespace aspic {
 
 // A term has the same number of internal variables in each of its tets, tet by tet.
 struct InternalRange {
-  int first_tet = 0, tet_count = 0;  // in the mesh
+  int first_tet = 0, tet_count = 0;  // in the mesh; elements, for rods
   int per_tet = 0;
 
   size_t size() const { return static_cast<size_t>(tet_count) * per_tet; }
@@ -31,6 +32,8 @@ class InternalVariables {
  public:
   virtual ~InternalVariables() = default;
   virtual InternalRange internal_range() const = 0;
+  // Writes the values at the start of a simulation at x; zeros by default.
+  virtual void write_initial(Positions /*x*/, std::span<double> z) const { std::fill(z.begin(), z.end(), 0.0); }
   // Sets the values at the start of the step and its duration [s]. Called after begin_step(), which sets zeros and
   // StepContext::h. `z` must outlive the step; empty: zeros.
   virtual void begin_internal(std::span<const double> z, double duration, const Energy::Context& context) const = 0;

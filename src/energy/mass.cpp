@@ -12,11 +12,13 @@
 namespace aspic {
 namespace {
 
-// Returns the lumped mass of the sheets at each vertex [kg].
-std::vector<double> sheet_mass(const TetMesh& mesh, std::span<const double> density) {
+// Returns the lumped mass of the sheets and rods at each vertex [kg].
+std::vector<double> thin_mass(const TetMesh& mesh, std::span<const double> density) {
   std::vector<double> mass(mesh.rest.size(), 0.0);
-  for (int e = mesh.tet_count(); e < mesh.element_count(); ++e)
-    for (const int v : mesh.triangle(e)) mass[v] += density[e] * element_volume(mesh, e) / 3;
+  for (int e = mesh.tet_count(); e < mesh.element_count(); ++e) {
+    const TetNodes nodes = nodes_of(mesh, e);
+    for (const int v : nodes) mass[v] += density[e] * element_volume(mesh, e) / nodes.count;
+  }
   return mass;
 }
 
@@ -41,11 +43,11 @@ MassMatrix::MassMatrix(const TetMesh& mesh, std::span<const double> density, Mas
       for (int v = 0; v < u && kind == MassKind::consistent; ++v) couplings.emplace_back(nodes[u], nodes[v]);
     }
   }
-  std::vector<double> of_sheets = sheet_mass(mesh, density);
-  of_sheets.insert(of_sheets.end(), angle_mass.begin(), angle_mass.end());
+  std::vector<double> of_thin = thin_mass(mesh, density);
+  of_thin.insert(of_thin.end(), angle_mass.begin(), angle_mass.end());
   for (int v = 0; v < rows(); ++v) {
-    lumped_[v] += of_sheets[v];
-    row_sums_[v] += of_sheets[v];
+    lumped_[v] += of_thin[v];
+    row_sums_[v] += of_thin[v];
   }
   const BlockPattern pattern = make_pattern(rows(), std::move(couplings));
   if (kind == MassKind::lumped) {
@@ -62,7 +64,7 @@ MassMatrix::MassMatrix(const TetMesh& mesh, std::span<const double> density, Mas
       for (int v = 0; v <= u; ++v)
         lower[pattern.slot(std::max(nodes[u], nodes[v]), std::min(nodes[u], nodes[v]))] += integrals.products[u][v] * m;
   }
-  for (int v = 0; v < rows(); ++v) lower[pattern.diagonal(v)] += of_sheets[v];
+  for (int v = 0; v < rows(); ++v) lower[pattern.diagonal(v)] += of_thin[v];
   store_rows(pattern, lower);
 }
 

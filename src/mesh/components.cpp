@@ -33,6 +33,7 @@ std::vector<std::vector<int>> element_components(const TetMesh& mesh) {
   std::vector<std::vector<int>> corners;
   for (const Tet& tet : mesh.tets) corners.emplace_back(tet.begin(), tet.end());
   for (const Triangle& triangle : mesh.sheet) corners.emplace_back(triangle.begin(), triangle.end());
+  for (const Segment& segment : mesh.rods) corners.emplace_back(segment.begin(), segment.end());
   return components(mesh.vertex_count(), corners);
 }
 

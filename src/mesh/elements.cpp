@@ -1,6 +1,7 @@
 #include "mesh/elements.h"
 
 #include <cmath>
+#include <numbers>
 
 #include "mesh/tet_nodes.h"
 #include "mesh/tet_shape.h"
@@ -12,6 +13,15 @@ namespace {
 Mat3d with_normal(const Vec3d& a, const Vec3d& b) {
   const Vec3d n = cross(a, b);
   return from_columns(a, b, (1 / norm(n)) * n);
+}
+
+// Returns the smallest rotation of the unit vector s to the unit vector t.
+Mat3d rotation(const Vec3d& s, const Vec3d& t) {
+  const Vec3d c = cross(s, t);
+  const Mat3d K = {{0, c[2], -c[1], -c[2], 0, c[0], c[1], -c[0], 0}};
+  const double cosine = dot(s, t);
+  if (!(cosine > -1)) return identity3<double>();  // undefined
+  return identity3<double>() + K + (1 / (1 + cosine)) * (K * K);
 }
 
 struct Offsets {
@@ -33,6 +43,11 @@ void append_mids(const TetMesh& body, const Offsets& offsets, TetMesh& all) {
 
 double element_volume(const TetMesh& mesh, int element) {
   if (mesh.is_tet(element)) return volume(mesh, element);
+  if (!mesh.is_triangle(element)) {
+    const auto& [p, q] = mesh.segment(element);
+    const double r = mesh.radius[element - mesh.first_segment()];
+    return std::numbers::pi * r * r * norm(mesh.rest[q] - mesh.rest[p]);
+  }
   const auto& [a, b, c] = mesh.triangle(element);
   const auto& X = mesh.rest;
   return mesh.thickness[element - mesh.tet_count()] * norm(cross(X[b] - X[a], X[c] - X[a])) / 2;
@@ -40,12 +55,14 @@ double element_volume(const TetMesh& mesh, int element) {
 
 Vec3d element_center(const TetMesh& mesh, int element) {
   if (mesh.is_tet(element)) return centroid(mesh, element);
+  if (!mesh.is_triangle(element)) return 0.5 * (mesh.rest[mesh.segment(element)[0]] + mesh.rest[mesh.segment(element)[1]]);
   const auto& [a, b, c] = mesh.triangle(element);
   return (1.0 / 3) * (mesh.rest[a] + mesh.rest[b] + mesh.rest[c]);
 }
 
 double element_quality(const TetMesh& mesh, int element) {
   if (mesh.is_tet(element)) return mean_ratio(corners(mesh, element));
+  if (!mesh.is_triangle(element)) return 1;
   const auto& [a, b, c] = mesh.triangle(element);
   const auto& X = mesh.rest;
   const Vec3d ab = X[b] - X[a], ac = X[c] - X[a];
@@ -58,16 +75,24 @@ Mat3d deformation_gradient(const TetMesh& mesh, int element, std::span<const dou
     const auto [a, b, c, d] = center_corners(mesh, element, x);
     return from_columns(b - a, c - a, d - a) * inverse(edge_matrix(mesh, element));
   }
-  const auto& [i, j, k] = mesh.triangle(element);
   const auto at = [&](int v) { return Vec3d{{x[3 * v], x[3 * v + 1], x[3 * v + 2]}}; };
   const auto& X = mesh.rest;
+  if (!mesh.is_triangle(element)) {
+    const auto& [p, q] = mesh.segment(element);
+    const Vec3d rest = X[q] - X[p], now = at(q) - at(p);
+    const double l0 = norm(rest), l = norm(now);
+    const Vec3d s = (1 / l0) * rest;
+    return rotation(s, (1 / l) * now) * (identity3<double>() + (l / l0 - 1) * outer(s, s));
+  }
+  const auto& [i, j, k] = mesh.triangle(element);
   return with_normal(at(j) - at(i), at(k) - at(i)) * inverse(with_normal(X[j] - X[i], X[k] - X[i]));
 }
 
 std::string size_text(const TetMesh& mesh) {
   std::string text = std::to_string(mesh.vertex_count()) + " vertices";
-  if (!mesh.tets.empty() || mesh.sheet.empty()) text += ", " + std::to_string(mesh.tet_count()) + " tets";
+  if (!mesh.tets.empty() || (mesh.sheet.empty() && mesh.rods.empty())) text += ", " + std::to_string(mesh.tet_count()) + " tets";
   if (!mesh.sheet.empty()) text += ", " + std::to_string(mesh.sheet.size()) + " triangles";
+  if (!mesh.rods.empty()) text += ", " + std::to_string(mesh.rods.size()) + " segments";
   return text;
 }
 
@@ -78,6 +103,8 @@ void append(const TetMesh& body, TetMesh& all) {
   append_mids(body, {first_tet, offset}, all);
   for (const Triangle& t : body.sheet) all.sheet.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
   all.thickness.insert(all.thickness.end(), body.thickness.begin(), body.thickness.end());
+  for (const Segment& s : body.rods) all.rods.push_back({s[0] + offset, s[1] + offset});
+  all.radius.insert(all.radius.end(), body.radius.begin(), body.radius.end());
   if (body.region.empty() && all.region.empty()) return;
   all.region.resize(first_tet, 0);
   all.region.insert(all.region.end(), body.region.begin(), body.region.end());

@@ -45,6 +45,11 @@ TetMesh rearranged(const TetMesh& mesh, const VertexSource& vertex_source, const
     result.sheet.push_back(triangle);
   }
   result.thickness = mesh.thickness;
+  for (Segment segment : mesh.rods) {
+    for (int& end : segment) end = vertex_name(end);
+    result.rods.push_back(segment);
+  }
+  result.radius = mesh.radius;
   return result;
 }
 

@@ -41,7 +41,7 @@ struct Numbering {
 // Returns an order along a Hilbert curve. `mesh` is in the user's order.
 Numbering locality_numbering(const TetMesh& mesh);
 
-// Reorder a mesh. The corners of each tet and the triangles of sheets keep their order.
+// Reorder a mesh. The corners of each tet and the elements of sheets and rods keep their order.
 TetMesh from_user(const Numbering& numbering, const TetMesh& user);
 TetMesh to_user(const Numbering& numbering, const TetMesh& stored);
 

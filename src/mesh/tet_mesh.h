@@ -1,4 +1,4 @@
-// Meshes of tets and sheets at rest, and triangle meshes, as plain data without adjacency or physics.
+// Meshes of tets, sheets and rods at rest, and triangle meshes, as plain data without adjacency or physics.
 #pragma once
 #include <array>
 #include <vector>
@@ -9,6 +9,7 @@ namespace aspic {
 
 using Tet = std::array<int, 4>;
 using Triangle = std::array<int, 3>;
+using Segment = std::array<int, 2>;
 using MidNodes = std::array<int, 6>;  // one per edge of a tet, see kTetEdges
 
 struct TetMesh {
@@ -20,13 +21,18 @@ struct TetMesh {
   std::vector<MidNodes> mids = {};
   std::vector<Triangle> sheet = {};    // triangles of sheets, which have no tets
   std::vector<double> thickness = {};  // of each triangle of `sheet` [m]
+  std::vector<Segment> rods = {};      // segments of rods, which have neither tets nor triangles
+  std::vector<double> radius = {};     // of each segment of `rods` [m]
 
   int vertex_count() const { return static_cast<int>(rest.size()); }
   int tet_count() const { return static_cast<int>(tets.size()); }
-  // Elements are the tets, then the triangles of sheets.
-  int element_count() const { return tet_count() + static_cast<int>(sheet.size()); }
+  // Elements are the tets, then the triangles of sheets, then the segments of rods.
+  int element_count() const { return first_segment() + static_cast<int>(rods.size()); }
   bool is_tet(int element) const { return element < tet_count(); }
+  bool is_triangle(int element) const { return !is_tet(element) && element < first_segment(); }
   const Triangle& triangle(int element) const { return sheet[element - tet_count()]; }
+  int first_segment() const { return tet_count() + static_cast<int>(sheet.size()); }  // its element
+  const Segment& segment(int element) const { return rods[element - first_segment()]; }
 };
 
 struct TriMesh {

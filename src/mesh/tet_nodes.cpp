@@ -15,6 +15,7 @@ constexpr int kParts[8][4] = {{0, 4, 6, 7}, {4, 1, 5, 8}, {6, 5, 2, 9}, {7, 8, 9
 }  // namespace
 
 TetNodes nodes_of(const TetMesh& mesh, int element) {
+  if (element >= mesh.first_segment()) return {{mesh.segment(element)[0], mesh.segment(element)[1]}, 2};
   if (!mesh.is_tet(element)) {
     const auto& [a, b, c] = mesh.triangle(element);
     return {{a, b, c}, 3};
@@ -105,6 +106,8 @@ LinearParts linear_parts(const TetMesh& mesh) {
   parts.mesh.rest = mesh.rest;
   parts.mesh.sheet = mesh.sheet;
   parts.mesh.thickness = mesh.thickness;
+  parts.mesh.rods = mesh.rods;
+  parts.mesh.radius = mesh.radius;
   const auto add = [&](int t, const Tet& part) {
     parts.mesh.tets.push_back(part);
     parts.tet.push_back(t);

@@ -1,4 +1,4 @@
-// Nodes of linear and quadratic tets, and of triangles of sheets. Code that handles all loops over nodes_of().
+// Nodes of linear and quadratic tets, of triangles of sheets and of segments of rods. Code that handles all loops over nodes_of().
 #pragma once
 #include <array>
 #include <span>
@@ -10,7 +10,7 @@ namespace aspic {
 
 inline constexpr int kTetEdges[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};  // as in VTK files
 
-// The nodes of an element: three corners of a triangle, or four of a tet, then the mid-edge nodes of a quadratic tet.
+// The nodes of an element: two ends of a segment, three corners of a triangle, or four of a tet, then the mid-edge nodes of a quadratic tet.
 struct TetNodes {
   std::array<int, 10> node;
   int count;
@@ -40,7 +40,7 @@ void straighten_edges(const TetMesh& mesh, std::vector<Vec3d>& positions);
 // entries per vertex.
 std::array<Vec3d, 4> center_corners(const TetMesh& mesh, int tet, std::span<const double> x);
 
-// A mesh with the same vertices and sheets, of linear tets: the linear tets themselves, and eight parts of each
+// A mesh with the same vertices, sheets and rods, of linear tets: the linear tets themselves, and eight parts of each
 // quadratic tet.
 struct LinearParts {
   TetMesh mesh;

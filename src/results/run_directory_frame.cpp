@@ -28,11 +28,12 @@ std::vector<double> body_of_elements(const Model& model) {
     const auto index = static_cast<double>(b);
     std::fill_n(body.begin() + range.first_tet, range.tet_count, index);
     std::fill_n(body.begin() + model.mesh.tet_count() + range.first_triangle, range.triangle_count, index);
+    std::fill_n(body.begin() + model.mesh.first_segment() + range.first_segment, range.segment_count, index);
   }
   return body;
 }
 
-// The label of each tet; 0 for sheets.
+// The label of each tet; 0 for sheets and rods.
 std::vector<double> region_of_elements(const TetMesh& mesh) {
   std::vector<double> region(mesh.region.begin(), mesh.region.end());
   region.resize(static_cast<size_t>(mesh.element_count()), 0);

@@ -167,7 +167,8 @@ void note_parts(const PlacedBody& body, const Model& model, std::vector<std::str
   if (parts.size() < 2) return;
   std::vector<char> is_pinned(model.mesh.vertex_count(), 0);
   for (const Pin& pin : model.pins)
-    for (const int v : pin.vertices) is_pinned[v] = 1;
+    for (const int v : pin.vertices)
+      if (v < model.mesh.vertex_count()) is_pinned[v] = 1;
   std::vector<int> loose;  // the first tet of each
   for (const std::vector<int>& part : parts) {
     const bool is_held = std::any_of(part.begin(), part.end(), [&](int t) {

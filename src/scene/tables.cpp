@@ -39,7 +39,7 @@ bool parse_finite(std::string_view word, double& value) {
   return error == std::errc() && end == word.data() + word.size() && std::isfinite(value);
 }
 
-const char* elements_of(const TetMesh& mesh) { return mesh.sheet.empty() ? "tets" : "triangles"; }
+const char* elements_of(const TetMesh& mesh) { return !mesh.rods.empty() ? "segments" : mesh.sheet.empty() ? "tets" : "triangles"; }
 
 std::vector<double> from_vtu(const fs::path& path, const Value& table, const TetMesh& mesh) {
   const Value* name = table.find("name");
@@ -68,6 +68,7 @@ std::vector<double> from_painting(Table& table, const FieldScope& scope) {
   std::vector<double> values;
   for (const auto& [a, b, c, d] : scope.mesh.tets) values.push_back(0.25 * ((at[a] + at[b]) + (at[c] + at[d])));
   for (const auto& [a, b, c] : scope.mesh.sheet) values.push_back((at[a] + at[b] + at[c]) / 3);
+  for (const auto& [a, b] : scope.mesh.rods) values.push_back(0.5 * (at[a] + at[b]));
   return values;
 }
 
@@ -82,7 +83,7 @@ std::vector<double> from_table(Table& table, const fs::path& path, const FieldSc
       throw error_at(field->place,
                      "name = " + toml_string(field->text()) + "; only VTU and PLY files have named fields");
     values = read_number_table(path, 1, static_cast<size_t>(scope.mesh.element_count()),
-                               scope.mesh.sheet.empty() ? "a tet" : "a triangle", name.place);
+                               !scope.mesh.rods.empty() ? "a segment" : scope.mesh.sheet.empty() ? "a tet" : "a triangle", name.place);
   }
   check_fingerprint(table, "hash", fingerprint_of_file(path), path.string());
   table.set("file", {scope.files.keep(path, stem), {}});
@@ -204,7 +205,7 @@ std::vector<double> element_values(Table& table, const Key& key, const FieldScop
   for (int e = 0; e < mesh.element_count(); ++e)
     if (!key.range.contains(values[e]))
       throw error_at(value.place, key.name + " = " + number_text(values[e]) +
-                                      (mesh.is_tet(e) ? " in tet " : " in triangle ") +
+                                      (mesh.is_tet(e) ? " in tet " : mesh.is_triangle(e) ? " in triangle " : " in segment ") +
                                       std::to_string(scope.whole ? scope.whole->number_of_tet(e) : e) + " at " +
                                       point_text(element_center(mesh, e)) + "; must be " + key.range.text());
   return values;

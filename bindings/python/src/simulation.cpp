@@ -283,7 +283,8 @@ py::array pinned_of(LiveSimulation& self) {
   py::array_t<bool> pinned(model.mesh.vertex_count());
   std::fill_n(pinned.mutable_data(), pinned.size(), false);
   for (const Pin& pin : model.pins)
-    for (const int v : pin.vertices) pinned.mutable_data()[model.numbering.vertex.to_user(v)] = true;
+    for (const int v : pin.vertices)
+      if (v < model.mesh.vertex_count()) pinned.mutable_data()[model.numbering.vertex.to_user(v)] = true;
   return pinned;
 }
 

@@ -15,7 +15,7 @@ constexpr double kRoundOff = 1e-12;  // of positions and velocities, relative to
 
 // Returns the last pin of each vertex, of those with a motion if there are any. Null: none.
 std::vector<const Pin*> pins_of_vertices(const Model& model) {
-  std::vector<const Pin*> pin_of(static_cast<size_t>(model.mesh.vertex_count()));
+  std::vector<const Pin*> pin_of(static_cast<size_t>(model.rows()));
   for (const Pin& pin : model.pins)
     for (const int v : pin.vertices)
       if (!pin_of[v] || pin.motion) pin_of[v] = &pin;
