@@ -16,6 +16,7 @@ struct MeshContent {
   // Mid-edge nodes of each tet in any order, {-1, ...} for a linear one; empty: all are linear.
   std::vector<MidNodes> mids = {};
   MeshGroups groups = {};  // of a mesh of tets
+  std::vector<Segment> segments = {};  // of lines
 };
 
 // Splits a polygon of at least three corners into a fan of triangles.

@@ -27,6 +27,10 @@ TetMesh read_tet_mesh(const std::string& path, std::vector<std::string>* notes =
 // Reads triangles, or the boundary of the tets. Throws InvalidInput like read_mesh().
 TriMesh read_tri_mesh(const std::string& path);
 
+// Reads the lines of an OBJ, VTU or VTK file as the vertices and rods of a mesh without radius, in the order of the
+// file. Throws InvalidInput like read_mesh(), and if the file has no lines.
+TetMesh read_line_mesh(const std::string& path);
+
 enum class FileEncoding { ascii, binary };  // formats of text only reject binary
 // Reading the file back gives the same bits. The file appears whole or not at all. Throws InvalidInput if it cannot be
 // written, if a coordinate is not finite, or if the format does not hold such elements or this encoding.

@@ -10,11 +10,11 @@
 namespace aspic {
 namespace {
 
-// Statements without positions or polygons.
+// Statements without positions, polygons or lines.
 const std::vector<std::string>& other_statements() {
   static const std::vector<std::string> names = {
       "vt",    "vn",     "vp",     "g",      "o",        "s",        "mg",   "usemtl",     "mtllib",    "p",
-      "l",     "usemap", "maplib", "bevel",  "c_interp", "d_interp", "lod",  "shadow_obj", "trace_obj", "ctech",
+      "usemap", "maplib", "bevel",  "c_interp", "d_interp", "lod",  "shadow_obj", "trace_obj", "ctech",
       "stech", "call",   "csh",    "cstype", "deg",      "bmat",     "step", "curv",       "curv2",     "surf",
       "parm",  "trim",   "hole",   "scrv",   "sp",       "end",      "con"};
   return names;
@@ -31,6 +31,8 @@ class ObjReader {
         read_vertex();
       } else if (statement == "f" || statement == "fo") {
         read_face();
+      } else if (statement == "l") {
+        read_line();
       } else {
         check_ignored(statement);
       }
@@ -56,6 +58,12 @@ class ObjReader {
     while (!text_.at_line_end()) corners_.push_back(corner(text_.word("a corner")));
     if (corners_.size() < 3) text_.fail("a face has fewer than three corners; write 'f a b c' or remove it");
     add_fan(corners_, content_.triangles);
+  }
+
+  void read_line() {
+    corners_.clear();
+    while (!text_.at_line_end()) corners_.push_back(corner(text_.word("an end of a line")));
+    for (size_t i = 1; i < corners_.size(); ++i) content_.segments.push_back({corners_[i - 1], corners_[i]});
   }
 
   // "vertex", "vertex/texture", "vertex//normal" or "vertex/texture/normal"; counted from 1, or backward from -1.

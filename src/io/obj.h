@@ -1,4 +1,4 @@
-// Wavefront OBJ: polygons as text. Reads positions and faces; ignores texture, normals, groups and materials.
+// Wavefront OBJ: polygons as text. Reads positions, faces and lines; ignores texture, normals, groups and materials.
 #pragma once
 #include <string>
 #include <string_view>

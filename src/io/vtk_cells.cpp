@@ -74,6 +74,15 @@ Kept kept_cells(const VtkPiece& piece, int first_point, bool keeps_tets) {
   return kept;
 }
 
+void append_lines(const VtkPiece& piece, int first_point, std::vector<Segment>& segments) {
+  for (size_t cell = 0; cell < piece.types.size(); ++cell) {
+    if (piece.types[cell] != kVtkLine && piece.types[cell] != kVtkPolyLine) continue;
+    for (int64_t i = cell == 0 ? 1 : piece.offsets[cell - 1] + 1; i < piece.offsets[cell]; ++i)
+      segments.push_back({first_point + static_cast<int>(piece.connectivity[static_cast<size_t>(i - 1)]),
+                          first_point + static_cast<int>(piece.connectivity[static_cast<size_t>(i)])});
+  }
+}
+
 Field gathered(const Field& field, const std::vector<size_t>& source) {
   const auto width = static_cast<size_t>(field.components);
   Field result{field.name, field.components, {}, field.type};
@@ -123,11 +132,13 @@ std::string fault_of_cells(const VtkPiece& piece) {
 
 bool append_piece(VtkPiece piece, bool keeps_tets, bool is_first, Vtu& grid) {
   std::vector<Vec3d>& vertices = keeps_tets ? grid.mesh.rest : grid.triangles.vertices;
-  const Kept kept = kept_cells(piece, static_cast<int>(vertices.size()), keeps_tets);
+  const int first_point = static_cast<int>(vertices.size());
+  const Kept kept = kept_cells(piece, first_point, keeps_tets);
   for (size_t i = 0; i < piece.positions.size(); i += 3)
     vertices.push_back({{piece.positions[i], piece.positions[i + 1], piece.positions[i + 2]}});
   grid.mesh.tets.insert(grid.mesh.tets.end(), kept.tets.begin(), kept.tets.end());
   grid.mesh.mids.insert(grid.mesh.mids.end(), kept.mids.begin(), kept.mids.end());
+  if (!keeps_tets) append_lines(piece, first_point, grid.segments);
   std::vector<Triangle>& triangles = grid.triangles.triangles;
   triangles.insert(triangles.end(), kept.triangles.begin(), kept.triangles.end());
   for (Field& field : piece.cell_fields) field = gathered(field, kept.source);

@@ -30,6 +30,7 @@ struct VtuFields {
 struct Vtu : VtuFields {
   TetMesh mesh;       // points are the vertices; region is set if the file has a cell field "region"
   TriMesh triangles;  // triangle cells if there are no tets
+  std::vector<Segment> segments = {};  // line cells between vertices of `triangles` if there are no tets
 };
 
 // Reads ascii, inline base64 and appended data, raw or zlib-compressed. Splits quads and skips lines and points. Throws

@@ -370,14 +370,13 @@ void add_damping(PlacedBody& body, size_t index, MassKind kind, SceneFiles& file
   const double a = damping["mass"].number(), b = damping["stiffness"].number();
   if (a > 0 || b > 0) {
     std::vector<double> density(model.density.size(), 0.0);  // densities of this body, zero elsewhere
-    const std::ptrdiff_t first =
-        body.mesh.sheet.empty() ? body.first_tet : model.mesh.tet_count() + body.first_triangle;
+    const std::ptrdiff_t first = model.bodies[index].first_element(model.mesh);
     std::copy_n(model.density.begin() + first, body.mesh.element_count(), density.begin() + first);
     model.damping.push_back(
         make_rayleigh_damping(MassMatrix(model.mesh, density, kind, angle_masses(model, &model.bodies[index])), a,
                               model.elasticity[index].get(), b));
   }
-  if (!body.mesh.sheet.empty()) return;
+  if (body.mesh.tets.empty()) return;
   const std::vector<double> viscosity =
       element_values(damping.table(), scene_schema().key("damping", "viscosity"),
                      {body.mesh, files, body.name(), *body.painted, nullptr, &body.groups});

@@ -19,6 +19,7 @@ struct PlacedBody {
   std::vector<Vec3d> start;
   int first_vertex = 0, first_tet = 0;  // offsets in the model
   int first_triangle = 0;               // in TetMesh::sheet of the model
+  int first_segment = 0;                // in TetMesh::rods of the model
   Numbering numbering = {};             // numbering of the body alone
   std::shared_ptr<PaintedFields> painted = {};
   // If the model has a part of the body: the whole body, and the vertices of the model.

@@ -206,7 +206,7 @@ BodyMaterial material_from(Source& source, const std::string& model, const Place
   BodyMaterial material{model, {}, source.density()};
   if (body.scene["elastic"].boolean()) {
     material.parameters = source.parameters();
-    if (body.mesh.mids.empty() && body.mesh.sheet.empty()) note_locking(material.parameters, body.name(), notes);
+    if (body.mesh.mids.empty() && !body.mesh.tets.empty()) note_locking(material.parameters, body.name(), notes);
   } else {
     material.model = kModelOfNothing;
     material.parameters.resize(body.mesh.tets.size());  // all stiffness is zero

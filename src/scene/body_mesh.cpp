@@ -19,6 +19,7 @@
 #include "mesh/surface.h"
 #include "mesh/surface_orientation.h"
 #include "mesh/tet_nodes.h"
+#include "scene/body_rod.h"
 #include "scene/body_sheet.h"
 #include "scene/placement.h"
 
@@ -250,6 +251,10 @@ TetMesh shape_mesh(const Value& shape, const MeshLoader& loader) {
     if (const Value* s = shape.find(sheet))
       throw error_at(s->place, std::string(sheet) + ": a sheet encloses no volume (add shell = { thickness = 0.001 } " +
                                    "to the body)");
+  for (const char* rod : {"line", "ring", "coil"})
+    if (const Value* s = shape.find(rod))
+      throw error_at(s->place, std::string(rod) + ": a polyline has no surface (add rod = { radius = 0.001 } to the " +
+                                   "body)");
   const auto number = [](const Value& table, const char* key) { return table[key].number(); };
   if (const Value* box = shape.find("box")) return box_mesh(*box, loader);
   if (const Value* c = shape.find("cylinder")) {
@@ -349,6 +354,7 @@ BodyMesh with_its_skin(Value& body, MeshLoader& loader, LoadedMesh mesh) {
 
 BodyMesh make_body_mesh(Value& body, MeshLoader& loader, std::optional<LoadedMesh> loaded) {
   if (body.find("shell")) return make_sheet_mesh(body, loader);
+  if (body.find("rod")) return make_rod_mesh(body, loader);
   LoadedMesh mesh = resolve_mesh(body, loader, std::move(loaded));
   MeshGroups groups = std::move(mesh.groups);
   BodyMesh result = with_its_skin(body, loader, std::move(mesh));

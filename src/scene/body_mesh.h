@@ -56,7 +56,7 @@ TetMesh shape_mesh(const Value& shape, const MeshLoader& loader);     // generat
 TriMesh shape_surface(const Value& shape, const MeshLoader& loader);  // a sheet, or the boundary of a solid
 
 struct BodyMesh {
-  TetMesh tets;         // the placed rest shape, checked; or a sheet
+  TetMesh tets;         // the placed rest shape, checked; or a sheet or a rod
   TriMesh skin;         // placed alike
   Embedding embedding;  // of the skin into the tets
   MeshGroups groups = {};

@@ -16,6 +16,7 @@
 #include "scene/body_actions.h"
 #include "scene/body_material.h"
 #include "scene/body_notes.h"
+#include "scene/body_rod.h"
 #include "scene/body_sheet.h"
 #include "scene/placement.h"
 #include "scene/scene_attachments.h"
@@ -137,6 +138,7 @@ class SceneBuilder {
       BodyMesh mesh = make_body_mesh(scene, loader, std::move(loaded));
       PlacedBody body{scene, std::move(mesh.tets), {}, model_.mesh.vertex_count(), model_.mesh.tet_count()};
       body.first_triangle = static_cast<int>(model_.mesh.sheet.size());
+      body.first_segment = static_cast<int>(model_.mesh.rods.size());
       body.groups = std::move(mesh.groups);
       body.painted = std::make_shared<PaintedFields>(placement_of(scene), files_, body.name());
       try {
@@ -161,7 +163,8 @@ class SceneBuilder {
     model_.numbering.vertex.append(body.first_vertex, body.numbering.vertex, vertices);
     model_.numbering.tet.append(body.first_tet, body.numbering.tet, tets);
     model_.bodies.push_back({body.name(), body.first_vertex, vertices, body.first_tet, tets, body.first_triangle,
-                             static_cast<int>(body.mesh.sheet.size())});
+                             static_cast<int>(body.mesh.sheet.size()), body.first_segment,
+                             static_cast<int>(body.mesh.rods.size())});
   }
 
   void add_model() {
@@ -176,8 +179,9 @@ class SceneBuilder {
                                   options_.limit.memory};
     add_pins(actions, model_);
     const std::vector<char> held = held_vertices();
-    std::vector<MaterialParameters> of_sheets;
-    std::vector<double> density_of_sheets;
+    std::vector<MaterialParameters> of_sheets, of_rods;
+    std::vector<double> density_of_sheets, density_of_rods;
+    std::vector<RodSegment> segments;
     for (PlacedBody& body : bodies_) {
       const Renumbering& tet = body.numbering.tet;
       const BodyMaterial material = body_material(body, files_, source_.notes);
@@ -188,14 +192,23 @@ class SceneBuilder {
         append_to(of_sheets, material.parameters);
         continue;
       }
+      if (!body.mesh.rods.empty()) {
+        model_.elasticity.push_back(rod_elasticity(body, material, held, model_, segments));
+        append_to(density_of_rods, material.density);
+        append_to(of_rods, material.parameters);
+        continue;
+      }
       append_to(model_.density, tet.from_user(material.density));
       const std::vector<MaterialParameters> parameters = from_user(tet, material.parameters);
       model_.elasticity.push_back(make_tet_elasticity(material.model, model_.mesh, body.first_tet, parameters));
       export_moduli(parameters, model_);
     }
     append_to(model_.density, density_of_sheets);
+    append_to(model_.density, density_of_rods);
     export_moduli(of_sheets, model_);
-    model_.numbering.tet.append(model_.mesh.tet_count(), {}, static_cast<int>(model_.mesh.sheet.size()));
+    export_moduli(of_rods, model_);
+    model_.numbering.tet.append(model_.mesh.tet_count(), {}, model_.mesh.element_count() - model_.mesh.tet_count());
+    if (!segments.empty()) model_.damping.push_back(make_rod_bending(model_.mesh, segments));
     model_.mass = std::make_unique<MassMatrix>(model_.mesh, model_.density, kind, angle_masses(model_));
     add_loads_and_damping(actions, model_);
     add_wind(source_.document, model_);

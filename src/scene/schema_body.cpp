@@ -26,6 +26,7 @@ void add_body(Schema& s) {
             key("elastic", kBoolean, "false: no elastic energy, as for a mass-spring body",
                 Usual{"true", "a body is a continuum"}),
             key("shell", kTable, "makes the body a sheet", Members{"shell"}),
+            key("rod", kTable, "makes the body a rod", Members{"rod"}),
             key("material", kTable, "material", Members{"material"}, Usual{"{}"}),
             key("deform", kTable, "initial shape; default: at rest", Members{"deform"}),
             key("velocity", kExpressions, "initial velocity of free vertices, a function of the rest position",
@@ -65,7 +66,22 @@ void add_body(Schema& s) {
                key("shear", kNumber, "shear modulus of warp and weft", Units{"Pa"}, kPositive, kRequired),
                key("warp", kNumbers, "direction of the warp in the rest shape, projected onto each triangle",
                    Usual{"[1.0, 0.0, 0.0]", "along x"})});
+  add_section(
+      s,
+      {"rod", "rod = { ... } in a [[body]]",
+       "A thin round rod, such as a cable or a hair: the lines of `mesh` (`l` of OBJ, line cells of VTU) or a `shape`. "
+       "It stretches with E A, bends with E I and twists with G J of `material`. Two pinned vertices of a segment clamp "
+       "it. Works with backward_euler and quasi_static."},
+      {key("radius", kNumber, "radius of the cross-section", Units{"m"}, kPositive, kRequired),
+       key("rest", kText, "curvature at rest", Choices{{"mesh", "straight"}}, Usual{"\"mesh\"", "that of the mesh"}),
+       key("natural_twist", kNumber, "twist at rest", Units{"rad/m"}, Usual{"0.0", "none"}),
+       key("twist_first", kNumber | kMovingExpression,
+           "angle by which the first segment is turned about its axis; function of the time t; default: 0 if both of "
+           "its vertices are pinned, else free",
+           Units{"rad"}),
+       key("twist_last", kNumber | kMovingExpression, "the same of the last segment", Units{"rad"})});
   s.alternatives.push_back({"body", {{"mesh", "mesh_size"}, {"shape"}}, true});
+  s.alternatives.push_back({"body", {{"shell"}, {"rod"}}, false});
 }
 
 void add_shapes(Schema& s) {
@@ -84,8 +100,11 @@ void add_shapes(Schema& s) {
   shape("rectangle", "a sheet about the origin, normal to z");
   shape("disc", "a round sheet about the origin, normal to z");
   shape("tube", "an open tube from z = 0 to z = height, a sheet");
+  shape("line", "a straight rod");
+  shape("ring", "a closed rod about the origin, normal to z");
+  shape("coil", "a helix about the z axis, a rod");
   s.alternatives.push_back(
-      {"shape", {{"box"}, {"cylinder"}, {"sphere"}, {"torus"}, {"chamber"}, {"rectangle"}, {"disc"}, {"tube"}}, true});
+      {"shape", {{"box"}, {"cylinder"}, {"sphere"}, {"torus"}, {"chamber"}, {"rectangle"}, {"disc"}, {"tube"}, {"line"}, {"ring"}, {"coil"}}, true});
 
   add_section(s, {"box", "box = { ... }", "A box cut into cells, each into tets."},
               {key("lower", kNumbers, "lowest corner", Units{"m"}, Usual{"[0.0, 0.0, 0.0]", "the origin"}),
@@ -127,6 +146,18 @@ void add_shapes(Schema& s) {
   length("tube", "radius", "radius");
   length("tube", "height", "length along z");
   length("tube", "size", "approximate edge length");
+  add_section(s, {"line", "line = { ... }", "A straight polyline of a rod."},
+              {key("from", kNumbers, "first vertex", Units{"m"}, Usual{"[0.0, 0.0, 0.0]", "the origin"}),
+               key("to", kNumbers, "last vertex", Units{"m"}, kRequired)});
+  length("line", "size", "approximate length of a segment");
+  s.sections.push_back({"ring", "ring = { ... }", "A closed polyline of a rod in the plane z = 0."});
+  length("ring", "radius", "radius");
+  length("ring", "size", "approximate length of a segment");
+  s.sections.push_back({"coil", "coil = { ... }", "A right-handed helix from (radius, 0, 0) upward."});
+  length("coil", "radius", "radius");
+  length("coil", "pitch", "height of a turn");
+  add_keys(s, "coil", {key("turns", kNumber, "number of turns", kPositive, kRequired)});
+  length("coil", "size", "approximate length of a segment");
 }
 
 void add_placement(Schema& s) {
