@@ -16,6 +16,7 @@ const std::vector<Check>& checks() {
     add_order_checks(list);
     add_bending_checks(list);
     add_shell_checks(list);
+    add_rod_checks(list);
     add_cook_checks(list);
     add_mesh_error_checks(list);
     add_sheet_checks(list);

@@ -23,6 +23,7 @@ void add_cylinder_checks(std::vector<Check>& checks);
 void add_vibration_checks(std::vector<Check>& checks);
 void add_bending_checks(std::vector<Check>& checks);
 void add_shell_checks(std::vector<Check>& checks);
+void add_rod_checks(std::vector<Check>& checks);
 void add_column_checks(std::vector<Check>& checks);
 void add_cook_checks(std::vector<Check>& checks);
 void add_pressure_checks(std::vector<Check>& checks);
