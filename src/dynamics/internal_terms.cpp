@@ -89,8 +89,9 @@ std::vector<double> InternalTerms::from_user(std::span<const double> z, const Re
 
 void InternalTerms::require_support(const IntegratorFacts& integrator) const {
   if (empty() || integrator.is_backward_euler || integrator.is_static()) return;
-  throw InvalidInput("integrator = '" + std::string(integrator.name) + "' does not advance the internal variables of '" +
-                     terms_[0].name + "'; choose backward_euler, or quasi_static without inertia");
+  throw InvalidInput("integrator = '" + std::string(integrator.name) +
+                     "' does not advance the internal variables of '" + terms_[0].name +
+                     "'; choose backward_euler, or quasi_static without inertia");
 }
 
 }  // namespace aspic

@@ -18,8 +18,8 @@ class InternalTerms {
   explicit InternalTerms(const Model& model);  // the model must outlive this
 
   bool empty() const { return terms_.empty(); }
-  size_t size() const { return size_; }    // number of internal variables
-  std::vector<std::string> names() const;  // of the terms
+  size_t size() const { return size_; }            // number of internal variables
+  std::vector<std::string> names() const;          // of the terms
   std::vector<double> initial(Positions x) const;  // at the start of a simulation at x
 
   // `damping`: the terms of Model::damping with their contexts.

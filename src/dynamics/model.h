@@ -28,7 +28,7 @@ struct BodyRange {
   int first_tet = 0, tet_count = 0;
   int first_triangle = 0, triangle_count = 0;  // in TetMesh::sheet
 
-  int first_segment = 0, segment_count = 0;    // in TetMesh::rods
+  int first_segment = 0, segment_count = 0;  // in TetMesh::rods
 
   bool is_sheet() const { return triangle_count > 0; }
   bool is_rod() const { return segment_count > 0; }
@@ -70,8 +70,9 @@ struct Model {
   const Wind* wind = nullptr;                              // one of the damping terms; null: no wind
   // If several processes hold the model, value(), min_det_F() and the counts of its terms are those of the whole model.
   Share share;
-  // Rows of angles at the edges of shells and the segments of rods, after those of the vertices. They are part of the state and of the energies,
-  // but not of the mesh: files and selections do not contain them, and only the pins of twist do. A part of a model, see Share, has none.
+  // Rows of angles at the edges of shells and the segments of rods, after those of the vertices. They are part of the
+  // state and of the energies, but not of the mesh: files and selections do not contain them, and only the pins of
+  // twist do. A part of a model, see Share, has none.
   std::vector<AngleRow> angle_rows;
 
   // Rows of the state and of the Hessian, each of 3 degrees of freedom: one per vertex, then the rows of angles.

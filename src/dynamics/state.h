@@ -11,8 +11,8 @@ namespace aspic {
 struct TetMesh;
 
 struct State {
-  // Positions [m] and velocities [m/s], 3 per row of the model: those of the vertices, then angles of edges or segments times a
-  // length and their rates, see Model::angle_rows.
+  // Positions [m] and velocities [m/s], 3 per row of the model: those of the vertices, then angles of edges or segments
+  // times a length and their rates, see Model::angle_rows.
   std::vector<double> q, qdot;
   double time = 0;  // [s]
   // Internal variables of the damping terms, see InternalTerms; empty: none, or those at the start of a simulation.

@@ -13,8 +13,8 @@ namespace aspic {
 std::vector<int> parts_of(const TetMesh& mesh, std::span<const double> modulus);
 
 // For computing parts of a distributed mesh.
-// Returns the longest edge of the linear tets, triangles and segments at each vertex [m]. Unlike the volume, it does not
-// underestimate slivers.
+// Returns the longest edge of the linear tets, triangles and segments at each vertex [m]. Unlike the volume, it does
+// not underestimate slivers.
 std::vector<double> longest_edge(const TetMesh& mesh);
 // Returns the exponent n of a vertex whose stiffness is about 100^n times less than the stiffest one.
 int softness_level(double stiffest, double stiffness);

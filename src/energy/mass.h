@@ -1,5 +1,5 @@
-// Mass matrix M of tets, sheets and rods: one scalar per vertex pair, the same for x, y and z. Rows of angles follow the
-// vertices, see angle_row.h.
+// Mass matrix M of tets, sheets and rods: one scalar per vertex pair, the same for x, y and z. Rows of angles follow
+// the vertices, see angle_row.h.
 #pragma once
 #include <span>
 #include <vector>
@@ -16,8 +16,8 @@ enum class MassKind {
 
 class MassMatrix {
  public:
-  // `density`: one per element [kg/m^3]. The masses of sheets and rods are always lumped. angle_mass: of the rows of angles
-  // [kg]. The mesh need not outlive this.
+  // `density`: one per element [kg/m^3]. The masses of sheets and rods are always lumped. angle_mass: of the rows of
+  // angles [kg]. The mesh need not outlive this.
   MassMatrix(const TetMesh& mesh, std::span<const double> density, MassKind kind,
              std::span<const double> angle_mass = {});
 

@@ -80,10 +80,10 @@ Vec3d any_normal(const Vec3d& t) {
 
 struct Joint {
   std::array<int, 3> vertices;
-  std::array<int, 2> segments;  // l and r
-  double b = 0, c = 0;          // [N m]
+  std::array<int, 2> segments;              // l and r
+  double b = 0, c = 0;                      // [N m]
   std::array<Pair, 2> rest_curvature = {};  // k0 of l and r, which differ only where a chain is closed
-  double rest_twist = 0;        // twist0
+  double rest_twist = 0;                    // twist0
 };
 
 // Data of a segment at the start of a step.
@@ -118,8 +118,8 @@ struct Frame {
 template <class T>
 struct Strains {
   Vec3<T> binormal;
-  T chi;              // 1 + t_l . t_r
-  T k[2][2];          // k_l and k_r
+  T chi;      // 1 + t_l . t_r
+  T k[2][2];  // k_l and k_r
   T twist;
 
   Strains(const Frame<T>& l, const Frame<T>& r, double twist_at_start) {
@@ -162,7 +162,7 @@ JointForces<T> forces_of(const Joint& joint, const Frame<T>& l, const Frame<T>& 
   }
   const T along = dot(strains.binormal, w);
   for (int e = 0; e < 2; ++e) {
-    const Frame<T> &own = *frames[e], &other = *frames[1 - e];
+    const Frame<T>&own = *frames[e], &other = *frames[1 - e];
     const Vec3<T> turned = e == 0 ? cross(other.tangent, w) : cross(w, other.tangent);
     Vec3<T> g = (T(1.0) / strains.chi) * (T(2.0) * turned - along * other.tangent) + (T(0.5) * M) * strains.binormal -
                 (forces.torque[e] / (T(1.0) + own.turned)) * cross(own.start, own.tangent);
@@ -171,9 +171,9 @@ JointForces<T> forces_of(const Joint& joint, const Frame<T>& l, const Frame<T>& 
   return forces;
 }
 
-constexpr int kNodes = 5;        // three vertices and two rows of angles
-constexpr int kInternal = 8;     // per segment
-constexpr int kDirections = 8;   // of a joint: edge vectors of l and r, and their angles
+constexpr int kNodes = 5;       // three vertices and two rows of angles
+constexpr int kInternal = 8;    // per segment
+constexpr int kDirections = 8;  // of a joint: edge vectors of l and r, and their angles
 
 class RodBending : public Energy, public InternalVariables {
  public:
@@ -304,8 +304,7 @@ class RodBending : public Energy, public InternalVariables {
     for (size_t k = 0; k < joints_.size(); ++k) {
       const std::array<int, kNodes> nodes = nodes_of_joint(joints_[k]);
       for (int i = 0; i < kNodes; ++i)
-        for (int j = 0; j < kNodes; ++j)
-          slots_[k][i][j] = nodes[i] >= nodes[j] ? pattern.slot(nodes[i], nodes[j]) : -1;
+        for (int j = 0; j < kNodes; ++j) slots_[k][i][j] = nodes[i] >= nodes[j] ? pattern.slot(nodes[i], nodes[j]) : -1;
     }
   }
 
@@ -315,8 +314,7 @@ class RodBending : public Energy, public InternalVariables {
     const int modified = groups_.count_if([&](int j) {
       const Joint& joint = joints_[j];
       Mat9d K = stiffness(joint, x, start, start.twist[j]);
-      const bool is_kept =
-          projection.kind == Definiteness::exact || !is_covered(nodes_of_joint(joint), projection);
+      const bool is_kept = projection.kind == Definiteness::exact || !is_covered(nodes_of_joint(joint), projection);
       const bool is_modified =
           !is_kept && modify_hessian(K, projection.kind == Definiteness::clamped ? EigenvalueFilter::clamp
                                                                                  : EigenvalueFilter::absolute) != 0;
@@ -461,8 +459,8 @@ class RodBending : public Energy, public InternalVariables {
       if (squared_norm(rest_[s].director) == 0) follow(static_cast<int>(s));
     for (size_t s = 0; s < segments_.size(); ++s)
       if (const int n = next[segments_[s].ends[1]]; n >= 0)
-        joints_.push_back({{segments_[s].ends[0], segments_[s].ends[1], segments_[n].ends[1]},
-                           {static_cast<int>(s), n}});
+        joints_.push_back(
+            {{segments_[s].ends[0], segments_[s].ends[1], segments_[n].ends[1]}, {static_cast<int>(s), n}});
     previous_.assign(segments_.size(), -1);
     for (const Joint& joint : joints_) previous_[joint.segments[1]] = joint.segments[0];
   }
@@ -593,8 +591,8 @@ std::vector<AngleRow> make_rod_rows(const TetMesh& mesh, int first, std::span<co
     const double r = mesh.radius[first + s];
     AngleRow& row = rows.back();
     row.center = row.center + (0.5 / in_row) * (mesh.rest[a] + mesh.rest[b]);
-    row.mass += 0.5 * density[s] * kPi * std::pow(r, 4) * norm(mesh.rest[b] - mesh.rest[a]) /
-                (length * length * in_row);
+    row.mass +=
+        0.5 * density[s] * kPi * std::pow(r, 4) * norm(mesh.rest[b] - mesh.rest[a]) / (length * length * in_row);
   }
   return rows;
 }

@@ -25,13 +25,13 @@
 namespace aspic {
 
 struct RodSegment {
-  Segment ends;                // the first one is the last one of the segment before it
-  double bending, torsion;     // E I and G J [N m^2]
-  double natural_twist = 0;    // twist0 per length [rad/m]
-  bool is_straight = false;    // rest curvature 0 instead of that of the mesh
-  bool is_held = false;        // rigid
-  int row = 0, entry = 0;      // of its angle in the state
-  double length = 1;           // [m]
+  Segment ends;              // the first one is the last one of the segment before it
+  double bending, torsion;   // E I and G J [N m^2]
+  double natural_twist = 0;  // twist0 per length [rad/m]
+  bool is_straight = false;  // rest curvature 0 instead of that of the mesh
+  bool is_held = false;      // rigid
+  int row = 0, entry = 0;    // of its angle in the state
+  double length = 1;         // [m]
 };
 
 // Returns the term of all segments of mesh.rods, in their order. Requires positive lengths at rest, and at most two

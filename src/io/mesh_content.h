@@ -15,7 +15,7 @@ struct MeshContent {
   std::vector<Triangle> triangles;
   // Mid-edge nodes of each tet in any order, {-1, ...} for a linear one; empty: all are linear.
   std::vector<MidNodes> mids = {};
-  MeshGroups groups = {};  // of a mesh of tets
+  MeshGroups groups = {};              // of a mesh of tets
   std::vector<Segment> segments = {};  // of lines
 };
 

@@ -92,8 +92,8 @@ MeshContent read_vtk_mesh(const fs::path& path) {
   if (!vtu.mesh.tets.empty())
     return {
         std::move(vtu.mesh.rest), std::move(vtu.mesh.tets), std::move(vtu.mesh.region), {}, std::move(vtu.mesh.mids)};
-  return {std::move(vtu.triangles.vertices), {}, {}, std::move(vtu.triangles.triangles), {}, {},
-          std::move(vtu.segments)};
+  return {
+      std::move(vtu.triangles.vertices), {}, {}, std::move(vtu.triangles.triangles), {}, {}, std::move(vtu.segments)};
 }
 
 void write_vtu_mesh(const fs::path& path, const TetMesh& mesh, FileEncoding) {
@@ -209,8 +209,9 @@ TetMesh read_line_mesh(const std::string& path) {
   check_memory(path);
   MeshContent content = format.read(path);
   if (content.segments.empty())
-    throw InvalidInput(path + ": holds no lines; a rod needs 'l' statements of an OBJ file, or line cells of a VTU or "
-                              "VTK file without tets");
+    throw InvalidInput(path +
+                       ": holds no lines; a rod needs 'l' statements of an OBJ file, or line cells of a VTU or "
+                       "VTK file without tets");
   TetMesh mesh{.rest = std::move(content.vertices), .tets = {}, .region = {}};
   mesh.rods = std::move(content.segments);
   return mesh;

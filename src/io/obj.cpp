@@ -13,10 +13,10 @@ namespace {
 // Statements without positions, polygons or lines.
 const std::vector<std::string>& other_statements() {
   static const std::vector<std::string> names = {
-      "vt",    "vn",     "vp",     "g",      "o",        "s",        "mg",   "usemtl",     "mtllib",    "p",
-      "usemap", "maplib", "bevel",  "c_interp", "d_interp", "lod",  "shadow_obj", "trace_obj", "ctech",
-      "stech", "call",   "csh",    "cstype", "deg",      "bmat",     "step", "curv",       "curv2",     "surf",
-      "parm",  "trim",   "hole",   "scrv",   "sp",       "end",      "con"};
+      "vt",    "vn",     "vp",     "g",     "o",        "s",        "mg",   "usemtl",     "mtllib",
+      "p",     "usemap", "maplib", "bevel", "c_interp", "d_interp", "lod",  "shadow_obj", "trace_obj",
+      "ctech", "stech",  "call",   "csh",   "cstype",   "deg",      "bmat", "step",       "curv",
+      "curv2", "surf",   "parm",   "trim",  "hole",     "scrv",     "sp",   "end",        "con"};
   return names;
 }
 

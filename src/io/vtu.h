@@ -28,8 +28,8 @@ struct VtuFields {
 };
 
 struct Vtu : VtuFields {
-  TetMesh mesh;       // points are the vertices; region is set if the file has a cell field "region"
-  TriMesh triangles;  // triangle cells if there are no tets
+  TetMesh mesh;                        // points are the vertices; region is set if the file has a cell field "region"
+  TriMesh triangles;                   // triangle cells if there are no tets
   std::vector<Segment> segments = {};  // line cells between vertices of `triangles` if there are no tets
 };
 

@@ -185,7 +185,10 @@ void write_vtu(const std::string& path, std::span<const double> points, const Te
   Cells cells;
   for (int e = 0; e < mesh.element_count(); ++e) {
     const TetNodes nodes = nodes_of(mesh, e);
-    cells.add(nodes, nodes.count == 2 ? kVtkLine : nodes.count == 3 ? kVtkTriangle : nodes.count == 4 ? kVtkTet : kVtkQuadraticTet);
+    cells.add(nodes, nodes.count == 2   ? kVtkLine
+                     : nodes.count == 3 ? kVtkTriangle
+                     : nodes.count == 4 ? kVtkTet
+                                        : kVtkQuadraticTet);
   }
   write(path, points, cells, fields);
 }

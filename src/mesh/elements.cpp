@@ -55,7 +55,8 @@ double element_volume(const TetMesh& mesh, int element) {
 
 Vec3d element_center(const TetMesh& mesh, int element) {
   if (mesh.is_tet(element)) return centroid(mesh, element);
-  if (!mesh.is_triangle(element)) return 0.5 * (mesh.rest[mesh.segment(element)[0]] + mesh.rest[mesh.segment(element)[1]]);
+  if (!mesh.is_triangle(element))
+    return 0.5 * (mesh.rest[mesh.segment(element)[0]] + mesh.rest[mesh.segment(element)[1]]);
   const auto& [a, b, c] = mesh.triangle(element);
   return (1.0 / 3) * (mesh.rest[a] + mesh.rest[b] + mesh.rest[c]);
 }
@@ -90,7 +91,8 @@ Mat3d deformation_gradient(const TetMesh& mesh, int element, std::span<const dou
 
 std::string size_text(const TetMesh& mesh) {
   std::string text = std::to_string(mesh.vertex_count()) + " vertices";
-  if (!mesh.tets.empty() || (mesh.sheet.empty() && mesh.rods.empty())) text += ", " + std::to_string(mesh.tet_count()) + " tets";
+  if (!mesh.tets.empty() || (mesh.sheet.empty() && mesh.rods.empty()))
+    text += ", " + std::to_string(mesh.tet_count()) + " tets";
   if (!mesh.sheet.empty()) text += ", " + std::to_string(mesh.sheet.size()) + " triangles";
   if (!mesh.rods.empty()) text += ", " + std::to_string(mesh.rods.size()) + " segments";
   return text;

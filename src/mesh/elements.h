@@ -10,7 +10,8 @@ namespace aspic {
 double element_volume(const TetMesh& mesh, int element);  // at rest; of a sheet: area times thickness [m^3]
 Vec3d element_center(const TetMesh& mesh, int element);   // centroid at rest [m]
 
-double element_quality(const TetMesh& mesh, int element);  // mean ratio: 1 for equal edges, 0 for a flat one; 1 for a segment
+double element_quality(const TetMesh& mesh,
+                       int element);  // mean ratio: 1 for equal edges, 0 for a flat one; 1 for a segment
 
 // Returns F at the centroid, where it is the mean over the element. A triangle keeps its thickness, a segment its
 // cross-section. x: 3 per vertex [m].

@@ -52,8 +52,9 @@ std::vector<Segment> chained(int vertex_count, const std::vector<Segment>& segme
   std::vector<std::vector<int>> at(vertex_count);
   for (size_t s = 0; s < segments.size(); ++s) {
     const auto& [a, b] = segments[s];
-    if (a == b) throw InvalidInput("segment " + std::to_string(s) + " leads from vertex " + std::to_string(a) +
-                                   " to itself; remove it");
+    if (a == b)
+      throw InvalidInput("segment " + std::to_string(s) + " leads from vertex " + std::to_string(a) +
+                         " to itself; remove it");
     for (const int v : {a, b}) {
       at[v].push_back(static_cast<int>(s));
       if (at[v].size() > 2)

@@ -1,4 +1,5 @@
-// Nodes of linear and quadratic tets, of triangles of sheets and of segments of rods. Code that handles all loops over nodes_of().
+// Nodes of linear and quadratic tets, of triangles of sheets and of segments of rods. Code that handles all loops over
+// nodes_of().
 #pragma once
 #include <array>
 #include <span>
@@ -10,7 +11,8 @@ namespace aspic {
 
 inline constexpr int kTetEdges[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};  // as in VTK files
 
-// The nodes of an element: two ends of a segment, three corners of a triangle, or four of a tet, then the mid-edge nodes of a quadratic tet.
+// The nodes of an element: two ends of a segment, three corners of a triangle, or four of a tet, then the mid-edge
+// nodes of a quadratic tet.
 struct TetNodes {
   std::array<int, 10> node;
   int count;

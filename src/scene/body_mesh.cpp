@@ -253,8 +253,8 @@ TetMesh shape_mesh(const Value& shape, const MeshLoader& loader) {
                                    "to the body)");
   for (const char* rod : {"line", "ring", "coil"})
     if (const Value* s = shape.find(rod))
-      throw error_at(s->place, std::string(rod) + ": a polyline has no surface (add rod = { radius = 0.001 } to the " +
-                                   "body)");
+      throw error_at(s->place,
+                     std::string(rod) + ": a polyline has no surface (add rod = { radius = 0.001 } to the " + "body)");
   const auto number = [](const Value& table, const char* key) { return table[key].number(); };
   if (const Value* box = shape.find("box")) return box_mesh(*box, loader);
   if (const Value* c = shape.find("cylinder")) {

@@ -31,7 +31,8 @@ void refuse_keys_beside_rod(const Value& body) {
   const Value& material = body["material"];
   if (const Value* file = material.find("file")) refuse(*file, "material.file");
   if (const Value& model = material["model"]; model.text() != "neo_hookean")
-    throw error_at(model.place, "model = " + toml_string(model.text()) + "; a rod is linear in its strains (remove it)");
+    throw error_at(model.place,
+                   "model = " + toml_string(model.text()) + "; a rod is linear in its strains (remove it)");
   const Value& damping = body["damping"];
   for (const char* key : {"viscosity", "stiffness"})
     if (const Value& value = damping[key]; !value.is_number() || value.number() != 0)

@@ -250,8 +250,9 @@ void add_scene_contact(Table& document, MeshLoader& loader, const std::vector<do
   for (const BodyRange& body : model.bodies)
     if (body.is_rod())
       throw error_at(document.find("contact")->place,
-                     "contact: body '" + body.name + "' is a rod, and rods have no contact yet (remove [contact] and "
-                     "the obstacles)");
+                     "contact: body '" + body.name +
+                         "' is a rod, and rods have no contact yet (remove [contact] and "
+                         "the obstacles)");
   const Value& options = *document.find("contact");
   const double friction = options["friction"].number();
   const auto number = [&options](const char* key) {

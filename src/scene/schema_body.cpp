@@ -70,7 +70,8 @@ void add_body(Schema& s) {
       s,
       {"rod", "rod = { ... } in a [[body]]",
        "A thin round rod, such as a cable or a hair: the lines of `mesh` (`l` of OBJ, line cells of VTU) or a `shape`. "
-       "It stretches with E A, bends with E I and twists with G J of `material`. Two pinned vertices of a segment clamp "
+       "It stretches with E A, bends with E I and twists with G J of `material`. Two pinned vertices of a segment "
+       "clamp "
        "it. Works with backward_euler and quasi_static."},
       {key("radius", kNumber, "radius of the cross-section", Units{"m"}, kPositive, kRequired),
        key("rest", kText, "curvature at rest", Choices{{"mesh", "straight"}}, Usual{"\"mesh\"", "that of the mesh"}),
@@ -103,8 +104,19 @@ void add_shapes(Schema& s) {
   shape("line", "a straight rod");
   shape("ring", "a closed rod about the origin, normal to z");
   shape("coil", "a helix about the z axis, a rod");
-  s.alternatives.push_back(
-      {"shape", {{"box"}, {"cylinder"}, {"sphere"}, {"torus"}, {"chamber"}, {"rectangle"}, {"disc"}, {"tube"}, {"line"}, {"ring"}, {"coil"}}, true});
+  s.alternatives.push_back({"shape",
+                            {{"box"},
+                             {"cylinder"},
+                             {"sphere"},
+                             {"torus"},
+                             {"chamber"},
+                             {"rectangle"},
+                             {"disc"},
+                             {"tube"},
+                             {"line"},
+                             {"ring"},
+                             {"coil"}},
+                            true});
 
   add_section(s, {"box", "box = { ... }", "A box cut into cells, each into tets."},
               {key("lower", kNumbers, "lowest corner", Units{"m"}, Usual{"[0.0, 0.0, 0.0]", "the origin"}),

@@ -39,7 +39,9 @@ bool parse_finite(std::string_view word, double& value) {
   return error == std::errc() && end == word.data() + word.size() && std::isfinite(value);
 }
 
-const char* elements_of(const TetMesh& mesh) { return !mesh.rods.empty() ? "segments" : mesh.sheet.empty() ? "tets" : "triangles"; }
+const char* elements_of(const TetMesh& mesh) {
+  return !mesh.rods.empty() ? "segments" : mesh.sheet.empty() ? "tets" : "triangles";
+}
 
 std::vector<double> from_vtu(const fs::path& path, const Value& table, const TetMesh& mesh) {
   const Value* name = table.find("name");
@@ -83,7 +85,10 @@ std::vector<double> from_table(Table& table, const fs::path& path, const FieldSc
       throw error_at(field->place,
                      "name = " + toml_string(field->text()) + "; only VTU and PLY files have named fields");
     values = read_number_table(path, 1, static_cast<size_t>(scope.mesh.element_count()),
-                               !scope.mesh.rods.empty() ? "a segment" : scope.mesh.sheet.empty() ? "a tet" : "a triangle", name.place);
+                               !scope.mesh.rods.empty()   ? "a segment"
+                               : scope.mesh.sheet.empty() ? "a tet"
+                                                          : "a triangle",
+                               name.place);
   }
   check_fingerprint(table, "hash", fingerprint_of_file(path), path.string());
   table.set("file", {scope.files.keep(path, stem), {}});
@@ -205,7 +210,9 @@ std::vector<double> element_values(Table& table, const Key& key, const FieldScop
   for (int e = 0; e < mesh.element_count(); ++e)
     if (!key.range.contains(values[e]))
       throw error_at(value.place, key.name + " = " + number_text(values[e]) +
-                                      (mesh.is_tet(e) ? " in tet " : mesh.is_triangle(e) ? " in triangle " : " in segment ") +
+                                      (mesh.is_tet(e)        ? " in tet "
+                                       : mesh.is_triangle(e) ? " in triangle "
+                                                             : " in segment ") +
                                       std::to_string(scope.whole ? scope.whole->number_of_tet(e) : e) + " at " +
                                       point_text(element_center(mesh, e)) + "; must be " + key.range.text());
   return values;

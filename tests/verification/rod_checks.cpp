@@ -46,7 +46,9 @@ struct TestRod {
     }
   }
 
-  size_t entry(size_t segment) const { return 3 * static_cast<size_t>(segments[segment].row) + segments[segment].entry; }
+  size_t entry(size_t segment) const {
+    return 3 * static_cast<size_t>(segments[segment].row) + segments[segment].entry;
+  }
   int rows() const { return mesh.vertex_count() + static_cast<int>((segments.size() + 2) / 3); }
   std::vector<double> young() const {
     return std::vector<double>(segments.size(), 4 / (kRodPi * std::pow(kRadius, 4)));
