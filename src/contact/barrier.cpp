@@ -30,14 +30,16 @@ std::vector<double> sizes_of(const ContactMesh& mesh) {
 ContactPoint foot_of(const ContactStencil& stencil, const ContactMesh& mesh, std::span<const Vec3d> x) {
   ContactPoint foot{.gap = stencil.gap(), .pressure = 0};
   foot.pressure = -stencil.weight / stencil.area * stencil.b().first;
-  double most = 0;
+  double most = 0, sum = 0;
   for (int k = 0; k < stencil.distance.count; ++k) {
     const int p = stencil.point[stencil.distance.point[k]];
     const double weight = std::abs(stencil.distance.c[k]);
     if (mesh.row[p] < 0) continue;
     foot.position = foot.position + weight * x[p];
+    sum += weight;
     if (weight > most) most = weight, foot.row = mesh.row[p];
   }
+  if (sum > 1.5) foot.position = (1 / sum) * foot.position;  // of two bodies
   return foot;
 }
 

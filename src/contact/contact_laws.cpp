@@ -22,9 +22,18 @@ double share_of_finer(double own, double other) {
 // and half over its edges.
 double share_over_points(const ContactPart& round) { return round.point_count == 1 ? 0 : 0.5; }
 
+// The pressure of a rod is integrated half over the points of the rod and half over its edges, since surfaces may press
+// on the middle of a segment. Two rods share the first half. Planes have no edges.
+double share_beside_rod(const ContactPart& own, const ContactPart& other) {
+  if (own.is_rod && other.is_rod) return 0.25;
+  if (!own.is_rod) return 0;
+  return other.point_count == 0 ? 1 : 0.5;
+}
+
 double share_of(const ContactPart& own, const ContactPart& other) {
   if (other.is_round) return share_over_points(other);
   if (own.is_round) return 1 - share_over_points(own);
+  if (own.is_rod || other.is_rod) return share_beside_rod(own, other);
   return share_of_finer(own.mean_triangle, other.mean_triangle);
 }
 
@@ -44,11 +53,11 @@ ContactLaws::ContactLaws(const ContactMesh& mesh, const ContactOptions& options)
       if (a.is_obstacle && b.is_obstacle) continue;
       const double edge = std::min(a.mean_edge, b.mean_edge);
       const double widest = options.reach_per_edge * edge, reach = options.reach > 0 ? options.reach : widest;
-      const bool is_round = a.is_round || b.is_round;
+      const bool is_round = a.is_round || b.is_round || a.is_rod || b.is_rod;
       law_[i * parts_ + j] = {.reach = reach,
                               .edge_reach = is_round ? reach : kGuardReach * reach,
                               .stiffness = options.stiffness > 0 ? options.stiffness : kStiffness * smaller_young(a, b),
-                              .share = i == j ? 0.5 : share_of(a, b),
+                              .share = i != j ? share_of(a, b) : a.is_rod ? 0.25 : 0.5,
                               .friction = std::sqrt(a.friction * b.friction),
                               .offset = i == j ? a.self_offset : a.offset + b.offset,
                               .is_round = is_round,

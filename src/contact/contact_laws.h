@@ -26,7 +26,7 @@ struct ContactLaw {
   double share = 0;       // weight of the integral over the first surface; the second one has the rest
   double friction = 0;    // coefficient
   double offset = 0;      // gaps are distances minus this [m]
-  bool is_round = false;  // one part is a capsule or a sphere
+  bool is_round = false;  // one part is a capsule, a sphere or a rod
   double guard = 0;       // minimum area of a point within the guards' reach [m^2]
   double edge = 0;        // mean edge of the finer surface [m]
   double widest = 0;      // default reach of parts that are thick and far apart [m]

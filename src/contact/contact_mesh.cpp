@@ -1,5 +1,6 @@
 #include "contact/contact_mesh.h"
 
+#include <algorithm>
 #include <limits>
 #include <map>
 
@@ -10,6 +11,7 @@ std::string ContactMesh::pair_name(const std::array<int, 2>& pair) const {
 }
 
 double ContactMesh::area_at_rest(const Triangle& t) const {
+  if (t[1] == t[2]) return 2 * parts[part[t[0]]].offset * norm(rest[t[1]] - rest[t[0]]);
   return norm(cross(rest[t[1]] - rest[t[0]], rest[t[2]] - rest[t[0]])) / 2;
 }
 
@@ -56,6 +58,39 @@ void ContactMesh::add(const ContactPart& given, std::span<const Vec3d> X, std::s
   for (const auto& [edge, index] : number_of) {
     own.mean_edge += norm(rest[edge[1]] - rest[edge[0]]) / static_cast<double>(number_of.size());
     for (const int p : edge) point_share[p] -= edge_share[index];
+  }
+  parts.push_back(own);
+}
+
+void ContactMesh::add_rod(const ContactPart& given, std::span<const Vec3d> X, std::span<const Segment> segments,
+                          std::span<const int> rows) {
+  ContactPart own = given;
+  own.is_rod = true;
+  own.first_point = point_count();
+  std::vector<int> number(X.size(), -1);
+  for (const Segment& segment : segments)
+    for (const int v : segment) number[v] = 0;
+  for (size_t v = 0; v < X.size(); ++v) {
+    if (number[v] < 0) continue;
+    number[v] = point_count();
+    rest.push_back(X[v]);
+    row.push_back(rows[v]);
+    part.push_back(static_cast<int>(parts.size()));
+  }
+  own.point_count = point_count() - own.first_point;
+  area.resize(rest.size(), 0.0);
+  point_share.resize(rest.size(), 1);
+  for (const Segment& segment : segments) {
+    const auto [a, b] = std::minmax(number[segment[0]], number[segment[1]]);
+    const double length = norm(rest[b] - rest[a]), band = 2 * own.offset * length;
+    own.mean_edge += length / static_cast<double>(segments.size());
+    own.mean_triangle += band / static_cast<double>(segments.size());
+    for (const int p : {a, b}) area[p] += band / 2, --point_share[p];
+    triangles.push_back({a, b, b});
+    edges_of.push_back({-1, -1, -1});
+    edges.push_back({a, b});
+    edge_share.push_back(0);
+    edge_area.push_back(band);
   }
   parts.push_back(own);
 }

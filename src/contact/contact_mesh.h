@@ -25,10 +25,11 @@ struct ContactPart {
   double young = 0;          // smallest Young's modulus of the tets of a body [Pa]
   double friction = 0;       // coefficient
   double offset = 0;         // distance of the surface from the points: half the thickness of a sheet, or the radius of
-                             // a capsule or a sphere [m]
+                             // a rod, a capsule or a sphere [m]
   bool is_round = false;     // a capsule or a sphere
   bool is_sheet = false;     // encloses nothing
-  double self_offset = 0;    // least gap of a sheet to itself, see allowed_self_offset() [m]
+  bool is_rod = false;       // its triangles are segments: the last two corners are equal
+  double self_offset = 0;    // least gap of a sheet or a rod to itself, see allowed_self_offset() [m]
   ObstacleMotion motion;     // motion of an obstacle; empty: at rest
 };
 
@@ -41,7 +42,8 @@ struct ContactPlane {
 
 // Consider the sum of a function of the distance over the triangles near a point. Adding these shares of the sums over
 // their edges and points counts each nearest feature once: 1 - (number of triangles) for an edge, and 1 - (number of
-// triangles) - (sum over its edges) for a point. In the interior of a surface these are -1 and 1, on its border 0.
+// triangles) - (sum over its edges) for a point. In the interior of a surface these are -1 and 1, on its border 0. For
+// rods, the segments take the place of the triangles.
 struct ContactMesh {
   std::vector<ContactPart> parts;
   std::vector<Vec3d> rest;                   // at rest, or of an obstacle at time 0 [m]
@@ -65,6 +67,9 @@ struct ContactMesh {
   // without triangles are omitted.
   void add(const ContactPart& part, std::span<const Vec3d> X, std::span<const Triangle> surface,
            std::span<const int> row);
+  // Adds a rod of radius part.offset. Its areas are those of a band as wide as its diameter.
+  void add_rod(const ContactPart& part, std::span<const Vec3d> X, std::span<const Segment> segments,
+               std::span<const int> row);
   // Adds an obstacle that consists of the points within part.offset of the segment between the ends, which may be
   // equal.
   void add_capsule(const ContactPart& part, const std::array<Vec3d, 2>& ends);
@@ -72,7 +77,7 @@ struct ContactMesh {
   void add_plane(const ContactPart& part, const Vec3d& origin, const Vec3d& normal);
 
   std::string pair_name(const std::array<int, 2>& pair) const;  // such as "ear and foot"
-  double area_at_rest(const Triangle& t) const;                 // [m^2]
+  double area_at_rest(const Triangle& t) const;  // of a segment: length times diameter [m^2]
 };
 
 }  // namespace aspic

@@ -17,7 +17,7 @@ struct ContactStencil {
   double weight = 0;      // factor of b [N]
   double reach = 0;       // gap at which b becomes positive [m]
   double offset = 0;      // the gap is the distance minus this [m]
-  bool is_round = false;  // of a capsule or a sphere
+  bool is_round = false;  // of a capsule, a sphere or a rod
   double area = 0;        // signed area that `weight` represents [m^2]; 0: a guard
   std::array<int, 2> parts = {};
   // For two edges: eps in the factor (2 - c/eps) c/eps, which vanishes for parallel edges, where c < eps is the squared

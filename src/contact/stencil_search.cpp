@@ -54,6 +54,15 @@ class NearFeatures {
   std::vector<int> edges_, points_;
 };
 
+// Returns the area of which two edges carry the pressure. A rod that crosses an edge touches it along its own band.
+double edge_pair_area(const ContactMesh& mesh, const EdgePair& pair, bool is_round) {
+  const double a = mesh.edge_area[pair.first], b = mesh.edge_area[pair.second];
+  const bool is_rod_a = mesh.parts[mesh.part[mesh.edges[pair.first][0]]].is_rod,
+             is_rod_b = mesh.parts[mesh.part[mesh.edges[pair.second][0]]].is_rod;
+  if (is_rod_a != is_rod_b) return (is_rod_a ? a : b) / 2;
+  return (a + b) / (is_round ? 2 : 4);
+}
+
 Distance point_point_distance(const Vec3d& x, const Vec3d& y) {
   Distance distance;
   distance.r = x - y;
@@ -233,7 +242,7 @@ void StencilSearch::add_edges(const EdgePair& pair, std::span<const Vec3d> x, Co
   const auto& [offset, is_round] = std::pair(laws_(i, j).offset, laws_(i, j).is_round);
   if (!(distance.d < offset + reach)) return;
   const auto& X = mesh_.rest;
-  const double area = (mesh_.edge_area[pair.first] + mesh_.edge_area[pair.second]) / (is_round ? 2 : 4);
+  const double area = edge_pair_area(mesh_, pair, is_round);
   found.push_back({.distance = distance,
                    .point = {a[0], a[1], b[0], b[1]},
                    .weight = laws_(i, j).stiffness * area,

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "contact/barrier.h"
 #include "mesh/rod_shapes.h"
 #include "scene/scene_cases_test.h"
 
@@ -59,7 +60,7 @@ TEST(RodScene, TwistIsPrescribedAtTheEnds) {
   EXPECT_NEAR(q[3 * 11 + 9], 0.01 * 0.5, 1e-15);
 }
 
-TEST(RodScene, RefusesBranchesContactAndKeysOfSolids) {
+TEST(RodScene, RefusesBranchesAndKeysOfSolids) {
   const TestFolder folder;
   folder.write("tree.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 1 1 0\nl 1 2 3\nl 2 4\n");
   const auto refusal = [&](const std::string& text) { return refusal_of(folder.write("rope.toml", text)); };
@@ -67,8 +68,38 @@ TEST(RodScene, RefusesBranchesContactAndKeysOfSolids) {
   EXPECT_THAT(refusal(kRope + "mesh = \"tree.obj\"\nrod = { radius = 0.01 }\n"), HasSubstr("meet at vertex 1"));
   EXPECT_THAT(refusal(kRope + line + "order = 2\n"), HasSubstr("has `rod`"));
   EXPECT_THAT(refusal(kRope + line + "damping = { stiffness = 0.1 }\n"), HasSubstr("damping.stiffness"));
-  EXPECT_THAT(refusal(kRope + line + "[contact]\n"), HasSubstr("rods have no contact yet"));
   EXPECT_THAT(refusal(kRope + "shape = { line = { to = [1.0, 0.0, 0.0], size = 0.1 } }\n"), HasSubstr("add rod"));
+}
+
+// A rope falls across a pinned bar; vertices of neither are near the crossing.
+TEST(RodScene, RodsCarryEachOther) {
+  const TestFolder folder;
+  Scene scene = load_scene(folder.write("cross.toml", R"(
+gravity = [0.0, 0.0, -9.81]
+[time]
+step = 0.01
+duration = 0.4
+[contact]
+friction = 0.3
+[[body]]
+name = "bar"
+rod = { radius = 0.005 }
+shape = { line = { from = [-0.1, 0.01, 0.0], to = [0.12, 0.01, 0.0], size = 0.04 } }
+material = { young = 1e8, poisson = 0.3, density = 1000.0 }
+[[body.pin]]
+where = "all"
+[[body]]
+name = "rope"
+rod = { radius = 0.005 }
+shape = { line = { from = [0.01, -0.1, 0.02], to = [0.01, 0.12, 0.02], size = 0.04 } }
+material = { young = 1e8, poisson = 0.3, density = 1000.0 }
+)"));
+  for (int k = 0; k < 40; ++k) ASSERT_TRUE(is_success(scene.simulation.step().status));
+  const Model& model = scene.simulation.model();
+  const ContactSummary contact = model.contact->summary(scene.simulation.state().q, 0);
+  EXPECT_GT(contact.contacts, 0);
+  EXPECT_GT(contact.min_gap, 0);
+  EXPECT_NEAR(scene.simulation.state().q[3 * static_cast<size_t>(model.bodies[1].first_vertex) + 2], 0.01, 0.005);
 }
 
 TEST(RodShapes, ChainsSegmentsFromEndToEnd) {

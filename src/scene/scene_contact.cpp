@@ -57,11 +57,24 @@ double smallest_young(const Model& model, const BodyRange& body) {
   return smallest;
 }
 
+// Adds a rod, which resists pressure by bending: its stiffness is E times diameter over length of a segment.
+void add_rod(ContactPart part, const Model& model, const BodyRange& body, const std::vector<int>& rows,
+             ContactMesh& contact) {
+  const double diameter = 2 * model.mesh.radius[body.first_segment];
+  part.offset = diameter / 2;
+  contact.add_rod(part, model.mesh.rest, std::span(model.mesh.rods).subspan(body.first_segment, body.segment_count),
+                  rows);
+  ContactPart& own = contact.parts.back();
+  own.young *= std::min(1.0, diameter / own.mean_edge);
+  own.self_offset = allowed_self_offset(contact, static_cast<int>(contact.parts.size()) - 1, diameter);
+}
+
 // Adds the surface of a body. A sheet resists pressure by bending and stretching: its stiffness is E t / edge, and its
 // surface lies half the thickness from its triangles.
 void add_body(ContactPart part, const Model& model, const BodyRange& body, ContactMesh& contact) {
   std::vector<int> rows(model.mesh.rest.size());
   std::iota(rows.begin(), rows.end(), 0);
+  if (body.is_rod()) return add_rod(part, model, body, rows, contact);
   if (!body.is_sheet())
     return contact.add(part, model.mesh.rest, boundary_triangles(model.mesh, body.first_tet, body.tet_count), rows);
   const double thickness = model.mesh.thickness[body.first_triangle];
@@ -247,12 +260,6 @@ void add_scene_contact(Table& document, MeshLoader& loader, const std::vector<do
     defaults.set("start", {std::string("apart"), {}});
     document.set("contact", {defaults, {}});
   }
-  for (const BodyRange& body : model.bodies)
-    if (body.is_rod())
-      throw error_at(document.find("contact")->place,
-                     "contact: body '" + body.name +
-                         "' is a rod, and rods have no contact yet (remove [contact] and "
-                         "the obstacles)");
   const Value& options = *document.find("contact");
   const double friction = options["friction"].number();
   const auto number = [&options](const char* key) {
@@ -293,7 +300,7 @@ void add_scene_contact(Table& document, MeshLoader& loader, const std::vector<do
   add_contact(std::move(contact), given, creep, model);
   note_reaches(*model.contact, loader);
   for (const ContactPart& part : model.contact->mesh().parts)
-    if (part.is_sheet && part.self_offset < 0.99 * 2 * part.offset)
+    if ((part.is_sheet || part.is_rod) && part.self_offset < 0.99 * 2 * part.offset)
       loader.notes.push_back(
           "body '" + part.name + "' keeps " + three_digits(part.self_offset) +
           " m from itself instead of its thickness, because that is .4 of the distance of its parts at rest");
