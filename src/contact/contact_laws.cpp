@@ -57,7 +57,9 @@ ContactLaws::ContactLaws(const ContactMesh& mesh, const ContactOptions& options)
       law_[i * parts_ + j] = {.reach = reach,
                               .edge_reach = is_round ? reach : kGuardReach * reach,
                               .stiffness = options.stiffness > 0 ? options.stiffness : kStiffness * smaller_young(a, b),
-                              .share = i != j ? share_of(a, b) : a.is_rod ? 0.25 : 0.5,
+                              .share = i != j     ? share_of(a, b)
+                                       : a.is_rod ? 0.25
+                                                  : 0.5,
                               .friction = std::sqrt(a.friction * b.friction),
                               .offset = i == j ? a.self_offset : a.offset + b.offset,
                               .is_round = is_round,

@@ -65,7 +65,7 @@ void ContactMesh::add(const ContactPart& given, std::span<const Vec3d> X, std::s
 void ContactMesh::add_rod(const ContactPart& given, std::span<const Vec3d> X, std::span<const Segment> segments,
                           std::span<const int> rows) {
   ContactPart own = given;
-  own.is_rod = true;
+  own.is_rod = own.is_hollow = true;
   own.first_point = point_count();
   std::vector<int> number(X.size(), -1);
   for (const Segment& segment : segments)

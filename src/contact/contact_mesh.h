@@ -27,7 +27,7 @@ struct ContactPart {
   double offset = 0;         // distance of the surface from the points: half the thickness of a sheet, or the radius of
                              // a rod, a capsule or a sphere [m]
   bool is_round = false;     // a capsule or a sphere
-  bool is_sheet = false;     // encloses nothing
+  bool is_hollow = false;    // encloses nothing: a sheet or a rod
   bool is_rod = false;       // its triangles are segments: the last two corners are equal
   double self_offset = 0;    // least gap of a sheet or a rod to itself, see allowed_self_offset() [m]
   ObstacleMotion motion;     // motion of an obstacle; empty: at rest
@@ -77,7 +77,7 @@ struct ContactMesh {
   void add_plane(const ContactPart& part, const Vec3d& origin, const Vec3d& normal);
 
   std::string pair_name(const std::array<int, 2>& pair) const;  // such as "ear and foot"
-  double area_at_rest(const Triangle& t) const;  // of a segment: length times diameter [m^2]
+  double area_at_rest(const Triangle& t) const;                 // of a segment: length times diameter [m^2]
 };
 
 }  // namespace aspic

@@ -120,7 +120,7 @@ std::vector<Enclosed> enclosed_parts(const ContactMesh& mesh, std::span<const Ve
   for (const int p : component_points(mesh))
     for (int outer = 0; outer < static_cast<int>(mesh.parts.size()); ++outer) {
       const int inner = mesh.part[p];
-      if (outer == inner || mesh.parts[outer].is_sheet) continue;
+      if (outer == inner || mesh.parts[outer].is_hollow) continue;
       if (mesh.parts[inner].is_obstacle && mesh.parts[outer].is_obstacle) continue;
       const auto is_known = [&](const Enclosed& e) { return e.inner == inner && e.outer == outer; };
       if (!closed.encloses(outer, x[p]) || std::any_of(found.begin(), found.end(), is_known)) continue;

@@ -79,7 +79,7 @@ void add_body(ContactPart part, const Model& model, const BodyRange& body, Conta
     return contact.add(part, model.mesh.rest, boundary_triangles(model.mesh, body.first_tet, body.tet_count), rows);
   const double thickness = model.mesh.thickness[body.first_triangle];
   part.offset = thickness / 2;
-  part.is_sheet = true;
+  part.is_hollow = true;
   contact.add(part, model.mesh.rest, std::span(model.mesh.sheet).subspan(body.first_triangle, body.triangle_count),
               rows);
   ContactPart& own = contact.parts.back();
@@ -300,7 +300,7 @@ void add_scene_contact(Table& document, MeshLoader& loader, const std::vector<do
   add_contact(std::move(contact), given, creep, model);
   note_reaches(*model.contact, loader);
   for (const ContactPart& part : model.contact->mesh().parts)
-    if ((part.is_sheet || part.is_rod) && part.self_offset < 0.99 * 2 * part.offset)
+    if (part.is_hollow && part.self_offset < 0.99 * 2 * part.offset)
       loader.notes.push_back(
           "body '" + part.name + "' keeps " + three_digits(part.self_offset) +
           " m from itself instead of its thickness, because that is .4 of the distance of its parts at rest");
