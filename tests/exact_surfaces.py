@@ -28,21 +28,20 @@ def data_array(text, name):
 
 
 def read_frame(path):
-    """Points, tets of 4 or 10 nodes, and the body of each tet."""
+    """Points, triangles and tets of 4 or 10 nodes, and the body of each."""
     text = pathlib.Path(path).read_text()
     numbers, corners, ends = (data_array(text, name) for name in ("Points", "connectivity", "offsets"))
     return list(zip(*[iter(numbers)] * 3)), [corners[a:b] for a, b in zip((0, *ends), ends)], data_array(text, "body")
 
 
 def boundary(tets):
-    """The faces of exactly one tet, as a tuple; four triangles for a face with nodes in its edges."""
-    faces = {}
-    for a, b, c, d, *mids in tets:
+    """The faces of exactly one tet, as a tuple; four triangles for a face with nodes in its edges. Triangles are surface themselves."""
+    faces, triangles = {}, [tuple(t) for t in tets if len(t) == 3]
+    for a, b, c, d, *mids in (t for t in tets if len(t) > 3):
         mid = dict(zip((frozenset(e) for e in ((a, b), (b, c), (a, c), (a, d), (b, d), (c, d))), mids))
         for face in ((a, c, b), (a, b, d), (a, d, c), (b, c, d)):
             key = tuple(sorted(face))
             faces[key] = None if key in faces else (face, mid)
-    triangles = []
     for (a, b, c), mid in filter(None, faces.values()):
         ab, bc, ca = (mid.get(frozenset(e)) for e in ((a, b), (b, c), (c, a)))
         triangles += [(a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca)] if mid else [(a, b, c)]

@@ -37,7 +37,7 @@ const std::vector<KnownField>& known_fields() {
                        int v) { return norm(surface.position(v, view.x) - surface.rest[v]); }},
       {.field = {"speed", "speed", "m/s"},
        .at_vertex = [](const View& view, const Surface& surface,
-                       int v) { return norm(surface.position(v, view.simulation.state().qdot)); }},
+                       int v) { return norm(surface.carried(v, view.simulation.state().qdot)); }},
       {.field = {"von_mises", "von Mises stress", "Pa"}, .elastic = &TetFields::von_mises},
       {.field = {"energy_density", "energy density", "J/m^3"}, .elastic = &TetFields::energy_density},
       {.field = {"det_F", "volume ratio det F", "", true, 1}, .elastic = &TetFields::det_F},
@@ -140,7 +140,7 @@ void FieldValues::evaluate(const std::string& field, const View& view, const Sur
     pressure_.assign(view.x.size(), 0.0);  // along the first axis
     for (const ContactPoint& contact : contact_points(view))
       if (contact.row >= 0) pressure_[3 * static_cast<size_t>(contact.row)] = contact.pressure;
-    for (int v = 0; v < surface.vertex_count(); ++v) values[v] = static_cast<float>(surface.position(v, pressure_)[0]);
+    for (int v = 0; v < surface.vertex_count(); ++v) values[v] = static_cast<float>(surface.carried(v, pressure_)[0]);
     return;
   }
   const std::span<const double> of_tet = tet_values(field, view);

@@ -56,7 +56,7 @@ Json vertex_reply(const ShownSide& shown, int vertex) {
           {"first_entry", surface.is_fine ? -1 : 3 * user},
           {"rest", json_of(surface.rest[vertex])},
           {"position", json_of(surface.position(vertex, view.x))},
-          {"velocity", json_of(surface.position(vertex, side.simulation().state().qdot))},
+          {"velocity", json_of(surface.carried(vertex, side.simulation().state().qdot))},
           {"mass", mass},
           {"pinned", side.pins().has(surface.anchor(vertex))},
           {"values", std::move(values)}};

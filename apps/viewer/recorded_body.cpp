@@ -52,6 +52,20 @@ void keep_carriers(const Model& model, RecordedBody& body) {
   for_carriers([&](int& v) { v = point[v]; });
 }
 
+// Adds a point for each vertex of a tube.
+void add_tubes(RecordedBody& body) {
+  for (RecordedSurface& recorded : body.surfaces) {
+    Surface& surface = recorded.surface;
+    for (int v = surface.first_of_tube(); v < surface.vertex_count(); ++v) {
+      surface.carrier[v] = Carrier::of_vertex(static_cast<int>(body.rest.size()));
+      body.tube.push_back(surface.tube[v - surface.first_of_tube()]);
+      body.rest.push_back(surface.rest[v]);
+      body.is_pinned.push_back(0);
+      body.mass.push_back(0);
+    }
+  }
+}
+
 std::vector<double> lumped_mass(const Model& model) {
   const MassMatrix mass(model.mesh, model.density, MassKind::lumped);
   return {mass.vertex_mass().begin(), mass.vertex_mass().end()};
@@ -72,6 +86,7 @@ RecordedBody body_with_interior(const Scene& scene) {
     body.is_pinned.push_back(pins.has(v));
     body.mass.push_back(mass[v]);
   }
+  add_tubes(body);
   return body;
 }
 

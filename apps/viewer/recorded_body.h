@@ -17,9 +17,10 @@ struct RecordedSurface {
 };
 
 struct RecordedBody {
-  std::vector<int> source;   // vertex of each point, in the model or in the sequence of the skins
-  std::vector<Vec3d> rest;   // rest position of each point [m]
-  std::vector<double> mass;  // share of each point in the mass of its tets [kg]
+  std::vector<int> source;      // vertex of each point, in the model or in the sequence of the skins
+  std::vector<TubePoint> tube;  // points after those of `source`, if they are vertices of the model
+  std::vector<Vec3d> rest;      // rest position of each point [m]
+  std::vector<double> mass;     // share of each point in the mass of its tets [kg]
   std::vector<uint8_t> is_pinned;
   std::vector<RecordedSurface> surfaces;  // the first one is the default
   // A surface without triangles that has one vertex per recorded value: a vertex of the boundary, or a tet whose value

@@ -144,7 +144,7 @@ class Recorder {
   int frame_count() const { return static_cast<int>(known_.frame_times.size()); }
 
   int most_in_memory() const {
-    const size_t numbers = 3 * body_.source.size() + moving_.size() * body_.places.rest.size();
+    const size_t numbers = 3 * body_.rest.size() + moving_.size() * body_.places.rest.size();
     const double per_frame = static_cast<double>(numbers) * sizeof(float);
     const double most =
         kBytesInMemoryPerByteOfText * static_cast<double>(options_.max_bytes) / std::max(1.0, per_frame);
@@ -187,6 +187,10 @@ class Recorder {
       Frame& frame = frames.emplace_back(Frame{.index = index});
       for (const int v : body_.source)
         for (size_t k = 0; k < 3; ++k) frame.x.push_back(static_cast<float>(x[3 * static_cast<size_t>(v) + k]));
+      for (const TubePoint& point : body_.tube) {
+        const Vec3d position = point.position(x);
+        for (int k = 0; k < 3; ++k) frame.x.push_back(static_cast<float>(position[k]));
+      }
       for (const std::string& field : moving_) frame.values.push_back(values(field, x, mesh_error));
       if (fixed_values_.empty())
         for (const std::string& field : fixed_) fixed_values_.push_back(values(field, x, mesh_error));

@@ -1,7 +1,9 @@
 #include "viewer/surface.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -64,6 +66,88 @@ TetMesh parts_of(const TetMesh& mesh, int tet) {
   return linear_parts(one).mesh;
 }
 
+Vec3d direction(const Vec3d& from, const Vec3d& to) {
+  const Vec3d d = to - from;
+  const double length = norm(d);
+  return length > 0 ? (1 / length) * d : Vec3d{{1, 0, 0}};
+}
+
+// Rotates v by the smallest rotation from the unit vector s to the unit vector t.
+Vec3d turned(const Vec3d& s, const Vec3d& t, const Vec3d& v) {
+  const Vec3d c = cross(s, t);
+  return dot(s, t) * v + cross(c, v) + (dot(c, v) / std::max(1 + dot(s, t), 1e-6)) * c;
+}
+
+// Adds a tube along the segments of rods: a ring of points at each vertex.
+class TubeBuilder {
+ public:
+  TubeBuilder(const TetMesh& mesh, const Incidence& elements, Surface& surface)
+      : mesh_(mesh), elements_(elements), surface_(surface), first_(mesh.rest.size(), -1), normal_(mesh.rest.size()) {}
+
+  void add() {
+    for (size_t s = 0; s < mesh_.rods.size(); ++s) {
+      const auto& [a, b] = mesh_.rods[s];
+      const double radius = mesh_.radius[s];
+      if (first_[a] < 0) add_ring(a, any_normal(tangent(a)), radius);
+      if (first_[b] < 0) add_ring(b, turned(tangent(a), tangent(b), normal_[a]), radius);
+      const int element = mesh_.first_segment() + static_cast<int>(s);
+      for (int k = 0; k < kSides; ++k) {
+        const int next = (k + 1) % kSides, c = first_[a], d = first_[b];
+        add_triangle({c + k, c + next, d + next}, element);
+        add_triangle({c + k, d + next, d + k}, element);
+      }
+      for (int k = 1; k + 1 < kSides; ++k) {
+        if (ends(a)[0] == a) add_triangle({first_[a], first_[a] + k + 1, first_[a] + k}, element);
+        if (ends(b)[1] == b) add_triangle({first_[b], first_[b] + k, first_[b] + k + 1}, element);
+      }
+    }
+  }
+
+ private:
+  static constexpr int kSides = 8;
+
+  // Returns the vertices before and after a vertex; the vertex itself beyond an end.
+  Segment ends(int v) const {
+    Segment ends = {v, v};
+    for (const int e : elements_.around(v)) {
+      const auto& [a, b] = mesh_.segment(e);
+      (a == v ? ends[1] : ends[0]) = a == v ? b : a;
+    }
+    return ends;
+  }
+  Vec3d tangent(int v) const { return direction(mesh_.rest[ends(v)[0]], mesh_.rest[ends(v)[1]]); }
+  static Vec3d any_normal(const Vec3d& t) {
+    const Vec3d n = cross(t, std::abs(t[0]) < 0.7 ? Vec3d{{1, 0, 0}} : Vec3d{{0, 1, 0}});
+    return (1 / norm(n)) * n;
+  }
+
+  void add_ring(int v, const Vec3d& normal, double radius) {
+    const Vec3d t = tangent(v), other = cross(t, normal);
+    first_[v] = surface_.vertex_count();
+    normal_[v] = normal;
+    for (int k = 0; k < kSides; ++k) {
+      const double angle = 2 * std::numbers::pi * k / kSides;
+      const Vec3d offset = (radius * std::cos(angle)) * normal + (radius * std::sin(angle)) * other;
+      surface_.rest.push_back(mesh_.rest[v] + offset);
+      surface_.carrier.push_back(Carrier::of_vertex(v));
+      surface_.tube.push_back({v, ends(v)[0], ends(v)[1], t, offset});
+      const std::span<const int> around = elements_.around(v);
+      surface_.tets.insert(surface_.tets.end(), around.begin(), around.end());
+      surface_.tets_start.push_back(static_cast<int>(surface_.tets.size()));
+    }
+  }
+  void add_triangle(const Triangle& corners, int element) {
+    surface_.triangles.push_back(corners);
+    surface_.tet.push_back(element);
+  }
+
+  const TetMesh& mesh_;
+  const Incidence& elements_;
+  Surface& surface_;
+  std::vector<int> first_;     // point of the ring of each vertex; -1: none
+  std::vector<Vec3d> normal_;  // to the first point of the ring
+};
+
 void add_edges(Surface& surface) {
   for_each_edge(edge_uses(surface.triangles),
                 [&](const EdgeUse* first, const EdgeUse*) { surface.edges.push_back(first->edge); });
@@ -81,7 +165,16 @@ uint32_t Surface::user_number(int vertex, const Numbering& numbering) const {
   return is_fine ? kNoVertex : static_cast<uint32_t>(numbering.vertex.to_user(anchor(vertex)));
 }
 
-Vec3d Surface::position(int vertex, std::span<const double> x) const { return carrier[vertex].position(x); }
+Vec3d TubePoint::position(std::span<const double> x) const {
+  return point(x, vertex) + turned(tangent, direction(point(x, before), point(x, after)), offset);
+}
+
+Vec3d Surface::carried(int vertex, std::span<const double> field) const { return carrier[vertex].position(field); }
+
+Vec3d Surface::position(int vertex, std::span<const double> x) const {
+  const int place = vertex - first_of_tube();
+  return place < 0 ? carried(vertex, x) : tube[place].position(x);
+}
 
 bool Surface::has_same_shape(const Surface& other) const {
   return rest.size() == other.rest.size() && triangles == other.triangles;
@@ -113,6 +206,7 @@ Surface fine_surface(const Scene& scene) {
   for (int v = 0; v <= surface.vertex_count(); ++v) surface.tets_start.push_back(v);
   for (const Carrier& carrier : surface.carrier) surface.tets.push_back(tet_with(mesh, tets, carrier.vertices()));
   for (const Triangle& t : surface.triangles) surface.tet.push_back(surface.tets[t[0]]);
+  TubeBuilder(mesh, tets, surface).add();
   add_edges(surface);
   return surface;
 }
@@ -134,6 +228,7 @@ Surface boundary_of(const Model& model) {
     const Triangle corners = {boundary.tet_vertex[t[0]], boundary.tet_vertex[t[1]], boundary.tet_vertex[t[2]]};
     surface.tet.push_back(tet_with(model.mesh, tets, corners));
   }
+  TubeBuilder(model.mesh, tets, surface).add();
   add_edges(surface);
   return surface;
 }

@@ -5,3 +5,4 @@
 #include "dynamics/pressure_load.h"
 #include "dynamics/share.h"
 #include "dynamics/state.h"
+#include "energy/angle_row.h"

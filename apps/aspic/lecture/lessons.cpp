@@ -79,7 +79,8 @@ const std::vector<Staging>& stagings() {
        .answer =
            "Their ratio. Stretching is a thousand times stiffer, so that the cape bends wherever it can; the more it "
            "resists bending, the fewer and wider are its folds.",
-       .scene = "01_cape"},
+       .scene = "01_cape",
+       .shape = Shape::of_the_scene},
       {.demonstration = "02_fine_mesh",
        .exercise =
            "The thin wires are the edges of tets at the surface: come closer to see them. So that it moves while you "
