@@ -279,7 +279,7 @@ class Lecture(CommandLine):
         verdicts = {page["page"]: page["verdict"] for page in summary["pages"]}
         self.assertEqual([n for n, v in verdicts.items() if v == "nothing to check"], [4, 35, 52])
         self.assertEqual(verdicts[6], "pass")
-        self.assertEqual(sum(v == "pass" for v in verdicts.values()), 58)
+        self.assertEqual(sum(v == "pass" for v in verdicts.values()), 59)
         for demonstration in summary["demonstrations"]:
             self.assertTrue(any("bound" in m for m in demonstration["measures"]), demonstration["key"])
             folder = self.folder / "out/lecture" / demonstration["key"]

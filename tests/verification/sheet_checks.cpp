@@ -142,7 +142,7 @@ void add_sheet_checks(std::vector<Check>& checks) {
        "Equilibrium of a sphere",
        check_balloon,
        {},
-       {"W'(s) = p R s^2, \\quad W = t \\left(\\tfrac{\\mu}{2} (2 s^2 - 2 - 4 \\ln s) + 2 \\lambda \\ln^2 s\\right)"}});
+       {R"tex(W'(s) = p R s^2, \quad W = t \left(\tfrac{\mu}{2} (2 s^2 - 2 - 4 \ln s) + 2 \lambda \ln^2 s\right))tex"}});
   checks.push_back({"sheets",
                     "strip",
                     "A heavy strip of hinges",
@@ -157,7 +157,7 @@ void add_sheet_checks(std::vector<Check>& checks) {
                     "Balance of forces",
                     check_terminal_speed,
                     {},
-                    {"v = \\sqrt{\\frac{2 m g}{\\rho\\, C_n A}}"}});
+                    {R"tex(v = \sqrt{\frac{2 m g}{\rho\, C_n A}})tex"}});
   checks.push_back({"sheets",
                     "incline",
                     "A sheet on an incline",
@@ -165,7 +165,7 @@ void add_sheet_checks(std::vector<Check>& checks) {
                     "Coulomb's law",
                     check_incline,
                     {},
-                    {"v = (\\sin\\alpha - \\mu \\cos\\alpha)\\, g t"}});
+                    {R"tex(v = (\sin\alpha - \mu \cos\alpha)\, g t)tex"}});
   checks.push_back({"sheets",
                     "momentum",
                     "A sheet that spins in empty space",
@@ -173,7 +173,7 @@ void add_sheet_checks(std::vector<Check>& checks) {
                     "Conservation of momentum",
                     check_momentum,
                     {},
-                    {"\\dot p = 0"}});
+                    {R"tex(\dot p = 0)tex"}});
 }
 
 }  // namespace aspic::verify
