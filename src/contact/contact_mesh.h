@@ -22,7 +22,7 @@ struct ContactPart {
   int first_point = 0, point_count = 0;
   double mean_edge = 0;      // [m]
   double mean_triangle = 0;  // [m^2]
-  double young = 0;          // smallest Young's modulus of the tets of a body [Pa]
+  double young = 0;          // smallest Young's modulus of a body; of a thin one reduced, see scene_contact.cpp [Pa]
   double friction = 0;       // coefficient
   double offset = 0;         // distance of the surface from the points: half the thickness of a sheet, or the radius of
                              // a rod, a capsule or a sphere [m]

@@ -11,48 +11,12 @@
 #include "mesh/box.h"
 #include "mesh/rod_shapes.h"
 #include "scene/placement.h"
+#include "scene/thin_body.h"
 
 namespace aspic {
 namespace {
 
 constexpr double kThickRod = 0.1;  // radius relative to the length, above which a body is no rod
-
-// Keys of a body that need elements with a surface or a volume.
-void refuse_keys_beside_rod(const Value& body) {
-  const auto refuse = [&](const Value& value, const std::string& key) {
-    throw error_at(value.place, key + ": body '" + body["name"].text() + "' has `rod`, for which " + key +
-                                    " is not available (remove one of the two)");
-  };
-  for (const char* key :
-       {"skin", "mesh_size", "viscoelastic", "fibre", "muscle", "cavity", "force", "traction", "pressure", "grab"})
-    if (const Value* value = body.find(key)) refuse(*value, key);
-  if (const Value& order = body["order"]; order.number() != 1) refuse(order, "order = 2");
-  if (const Value& elastic = body["elastic"]; !elastic.boolean()) refuse(elastic, "elastic = false");
-  const Value& material = body["material"];
-  if (const Value* file = material.find("file")) refuse(*file, "material.file");
-  if (const Value& model = material["model"]; model.text() != "neo_hookean")
-    throw error_at(model.place,
-                   "model = " + toml_string(model.text()) + "; a rod is linear in its strains (remove it)");
-  const Value& damping = body["damping"];
-  for (const char* key : {"viscosity", "stiffness"})
-    if (const Value& value = damping[key]; !value.is_number() || value.number() != 0)
-      refuse(value, std::string("damping.") + key);
-  if (const Value* springs = body.find("spring"))
-    for (const Value& spring : springs->array())
-      if (const Value* edges = spring.find("edges")) refuse(*edges, "spring.edges");
-}
-
-TetMesh rod_from_file(Value& body, MeshLoader& loader) {
-  const Value mesh = body["mesh"];
-  const std::filesystem::path path = loader.files.find(mesh);
-  try {
-    TetMesh lines = read_line_mesh(path.string());
-    body.table().set("mesh", {loader.files.keep(path, body["name"].text()), {}});
-    return lines;
-  } catch (const InvalidInput& e) {
-    throw error_at(mesh.place, std::string("mesh = ") + toml_string(mesh.text()) + ": " + e.what());
-  }
-}
 
 TetMesh rod_from_shape(const Value& shape, const MeshLoader& loader) {
   const auto number = [](const Value& table, const char* key) { return table[key].number(); };
@@ -163,10 +127,12 @@ void add_twist_pins(const PlacedBody& body, std::span<const RodSegment> segments
 }  // namespace
 
 BodyMesh make_rod_mesh(Value& body, MeshLoader& loader) {
-  refuse_keys_beside_rod(body);
+  refuse_keys_of_solids(
+      body,
+      {"rod", "a rod is linear in its strains (remove it)", {"traction", "pressure"}, {"viscosity", "stiffness"}});
   const Value* shape = body.find("shape");
   const Place place = (shape ? *shape : body["mesh"]).place;
-  TetMesh mesh = shape ? rod_from_shape(*shape, loader) : rod_from_file(body, loader);
+  TetMesh mesh = shape ? rod_from_shape(*shape, loader) : thin_mesh_from_file(body, loader, read_line_mesh);
   try {
     mesh.rods = chained(mesh.vertex_count(), mesh.rods);
   } catch (const InvalidInput& e) {

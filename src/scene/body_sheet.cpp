@@ -19,46 +19,13 @@
 #include "mesh/triangle_shape.h"
 #include "scene/placement.h"
 #include "scene/schema.h"
+#include "scene/thin_body.h"
 
 namespace aspic {
 namespace {
 
 constexpr double kAcross = 1e-6;  // least sine between the warp and the normal of a triangle
 constexpr double kThick = 0.1;    // thickness relative to the extent, above which a body is no sheet
-
-// Keys of a body that need tets.
-void refuse_keys_of_solids(const Value& body) {
-  const auto refuse = [&](const Value& value, const std::string& key) {
-    throw error_at(value.place, key + ": body '" + body["name"].text() + "' has `shell`, and " + key +
-                                    " needs a solid (remove one of the two)");
-  };
-  for (const char* key : {"skin", "mesh_size", "viscoelastic", "fibre", "muscle", "cavity", "force", "grab"})
-    if (const Value* value = body.find(key)) refuse(*value, key);
-  if (const Value& order = body["order"]; order.number() != 1) refuse(order, "order = 2");
-  if (const Value& elastic = body["elastic"]; !elastic.boolean()) refuse(elastic, "elastic = false");
-  const Value& material = body["material"];
-  if (const Value* file = material.find("file")) refuse(*file, "material.file");
-  if (const Value& model = material["model"]; model.text() != "neo_hookean")
-    throw error_at(model.place,
-                   "model = " + toml_string(model.text()) + "; a shell is neo_hookean, or has shell.weave");
-  const Value& viscosity = body["damping"]["viscosity"];
-  if (!viscosity.is_number() || viscosity.number() != 0) refuse(viscosity, "damping.viscosity");
-  if (const Value* springs = body.find("spring"))
-    for (const Value& spring : springs->array())
-      if (const Value* edges = spring.find("edges")) refuse(*edges, "spring.edges");
-}
-
-TriMesh sheet_from_file(Value& body, MeshLoader& loader) {
-  const Value mesh = body["mesh"];
-  const std::filesystem::path path = loader.files.find(mesh);
-  try {
-    TriMesh surface = read_tri_mesh(path.string());
-    body.table().set("mesh", {loader.files.keep(path, body["name"].text()), {}});
-    return surface;
-  } catch (const InvalidInput& e) {
-    throw error_at(mesh.place, std::string("mesh = ") + toml_string(mesh.text()) + ": " + e.what());
-  }
-}
 
 std::string list_of(const std::vector<int>& triangles) {
   std::string text;
@@ -153,10 +120,10 @@ void add_mid_edges(const PlacedBody& body, const BodyMaterial& material, Model& 
 }  // namespace
 
 BodyMesh make_sheet_mesh(Value& body, MeshLoader& loader) {
-  refuse_keys_of_solids(body);
+  refuse_keys_of_solids(body, {"shell", "a shell is neo_hookean, or has shell.weave", {}, {"viscosity"}});
   const Value* shape = body.find("shape");
   const Place place = (shape ? *shape : body["mesh"]).place;
-  TriMesh surface = shape ? shape_surface(*shape, loader) : sheet_from_file(body, loader);
+  TriMesh surface = shape ? shape_surface(*shape, loader) : thin_mesh_from_file(body, loader, read_tri_mesh);
   check(surface, body, place);
   if (const std::string why = loader.why_not(surface.triangle_count()); !why.empty())
     throw error_at(body.place, why + " (choose a coarser mesh)");
