@@ -12,17 +12,16 @@
 namespace aspic {
 namespace {
 
-// Flops of a factorization in the time of one block-Jacobi iteration, per row: 25 ns at 60 Gflop/s, both measured on
-// one AVX-512 core. The ratio differs little between machines.
-constexpr double kFlopsPerIteration = 1500;
-// Cost of two digits with multigrid, in block-Jacobi iterations: about eight cycles of three, and a share of the setup,
-// which serves all matrices of a sequence. Measured by bench_preconditioners.
-constexpr double kMultigridCost = 30;
-constexpr double kLoose = 1.5;        // inexact solves are followed by more Newton iterations than exact ones
-constexpr double kRoundOff = 1e-12;   // round-off of a sum of canceling entries, relative to the diagonal
-constexpr double kIterations = 4;     // fit to beams of 425 to 12 825 vertices, E = 1e4 to 1e8
-constexpr int kBlockJacobiCap = 300;  // maximum iterations before the next choice
-constexpr int kMultigridCap = 500;
+// Costs in block-Jacobi iterations (25 ns per row on one AVX-512 core; ratios differ little between machines), fit to
+// the bodies of tests/bench/auto.py. A factorization of f flops per row costs f / kFlopsPerIteration + kSmallFronts
+// sqrt(f): small fronts run slower. Multigrid costs kCycleCost per cycle, and kMultigridCost for two digits.
+constexpr double kFlopsPerIteration = 1500, kSmallFronts = 0.55;
+constexpr double kCycleCost = 5, kMultigridCost = 40;
+constexpr double kLoose = 1.5;          // inexact solves are followed by more Newton iterations than exact ones
+constexpr double kLifted = 6;           // the same with stiff rows, whose pressures cost iterations, too
+constexpr double kRoundOff = 1e-12;     // round-off of a sum of canceling entries, relative to the diagonal
+constexpr double kIterations = 4;       // fit to beams of 425 to 12 825 vertices, E = 1e4 to 1e8
+constexpr int kBlockJacobiCap = 300;    // maximum iterations before the next choice
 constexpr int kLastChoiceCap = 10'000;  // maximum iterations without a next choice
 
 template <class Visit>
@@ -132,7 +131,7 @@ AutoSolver::AutoSolver(int64_t memory_limit, int solves)
       solves_(solves),
       cholesky_(memory_limit),
       block_jacobi_(kBlockJacobiCap),
-      multigrid_(std::make_unique<Multigrid>(), kMultigridCap),
+      multigrid_(std::make_unique<Multigrid>()),
       solver_{&block_jacobi_, &multigrid_, &cholesky_} {}
 
 void AutoSolver::analyze(const BlockPattern& pattern) {
@@ -142,12 +141,18 @@ void AutoSolver::analyze(const BlockPattern& pattern) {
   is_chosen_ = has_chosen_ = false;
   prediction_ = predict_cholesky(pattern);
   fits_ = prediction_.bytes < static_cast<double>(std::min(memory_limit_, free_memory()));
-  affordable_ = prediction_.flops / (kFlopsPerIteration * solves_ * std::max(1, pattern.rows()));
-  multigrid_.set_max_iterations(fits_ ? kMultigridCap : kLastChoiceCap);
+  const int rows = std::max(1, pattern.rows());
+  const double f = prediction_.flops / rows;
+  affordable_ = f / kFlopsPerIteration;
+  if (rows > MultigridOptions().coarsest_rows) affordable_ += kSmallFronts * std::sqrt(f);  // else multigrid is dense
+  affordable_ /= solves_;
+  // Cycles that cost as much as a factorization.
+  multigrid_.set_max_iterations(fits_ ? static_cast<int>(std::ceil(affordable_ / kCycleCost)) : kLastChoiceCap);
 }
 
 void AutoSolver::begin() {
   is_chosen_ = false;
+  cycles_ = tries_ = 0;
   for (LinearSolver* solver : solver_) solver->begin();
 }
 
@@ -155,13 +160,15 @@ AutoSolver::Choice AutoSolver::cheapest(const BlockSparse& H) {
   expected_ = 0;
   if (fits_ && affordable_ <= kLoose) return kCholesky;
   expected_ = predict_iterations(H, held_);
-  const double iterative = kLoose * std::min(expected_, kMultigridCost);
+  const bool is_lifted = stiff_ && !stiff_->empty();
+  const double iterative = (is_lifted ? kLifted : kLoose) * std::min(expected_, kMultigridCost);
   if (fits_ && affordable_ <= iterative) return kCholesky;
   return expected_ <= kMultigridCost ? kBlockJacobi : kMultigrid;
 }
 
 bool AutoSolver::factorize_with_choice() {
   LinearSolver& solver = *solver_[choice_];
+  if (choice_ == kMultigrid) ++tries_;
   if (!is_analyzed_[choice_]) solver.analyze(*pattern_);
   is_analyzed_[choice_] = true;
   if (solver.factorize(*H_)) return true;
@@ -175,6 +182,7 @@ bool AutoSolver::factorize_with_choice() {
 bool AutoSolver::factorize(const BlockSparse& H) {
   H_ = &H;
   if (!is_chosen_) choice_ = cheapest(H);
+  if (kCycleCost * cycles_ < affordable_ * tries_) choice_ = kMultigrid;  // the last failure was an exception
   const bool has_stiff_rows = !H.stencils.empty() || (stiff_ && !stiff_->empty());
   if (choice_ == kBlockJacobi && has_stiff_rows) choice_ = kMultigrid;  // the prediction ignores them
   is_chosen_ = has_chosen_ = true;
@@ -200,6 +208,7 @@ SolveReport AutoSolver::solve(std::span<const double> b, std::span<double> x, do
     total.iterations += report.iterations;  // includes failed attempts
     total.products += report.products;
     total.cycles += report.cycles;
+    cycles_ += report.cycles;
     total.stopped = report.stopped;
     if (report.ok || report.indefinite || report.stopped || !std::isfinite(report.relative_residual) || !fall_back())
       return total;

@@ -28,9 +28,10 @@ double predict_iterations(const UniformStiffness& stiffness);
 
 // Predicts the cheapest solver for each sequence of matrices from its first one: a factorization, or conjugate
 // gradients with multigrid or block-Jacobi. If the chosen solver does not converge, the next one in the order
-// block_jacobi, multigrid, cholesky replaces it; cholesky only if its factor fits into memory. The choice depends
-// neither on clocks nor on earlier sequences, so a resumed run makes the same choices. Only if the factor nearly fills
-// the free memory may two runs differ.
+// block_jacobi, multigrid, cholesky replaces it; cholesky only if its factor fits into memory, and once the cycles of a
+// solve have cost a factorization. Multigrid returns for the next matrix if it has cost less than that on average. The
+// choice depends neither on clocks nor on earlier sequences, so a resumed run makes the same choices. Only if the
+// factor nearly fills the free memory may two runs differ.
 class AutoSolver : public LinearSolver {
  public:
   // `solves`: approximate number of right-hand sides per factorization.
@@ -77,7 +78,8 @@ class AutoSolver : public LinearSolver {
   bool is_chosen_ = false;   // a choice was made for this sequence
   Choice choice_ = kBlockJacobi;
   int64_t fallbacks_ = 0;
-  std::vector<char> held_;  // scratch
+  double cycles_ = 0, tries_ = 0;  // cycles in this sequence, and matrices that multigrid was tried on
+  std::vector<char> held_;         // scratch
 };
 
 // Returns the Cholesky solver that `solver` is or has chosen, or null.
