@@ -98,6 +98,22 @@ void require_mid_edges(const PlacedBody& body, const std::vector<Triangle>& tria
   });
 }
 
+// Adds the bending of hinges that yield, and leaves it out of the sheet.
+void add_creases(const PlacedBody& body, Model& model, SheetMaterial& sheet) {
+  const Value& shell = body.scene["shell"];
+  const Value& yield = shell["yield"];
+  if (shell["bending"].text() == "mid_edge")
+    throw error_at(yield.place, "yield needs bending = \"hinge\" (remove one of the two)");
+  if (*std::max_element(sheet.moment.begin(), sheet.moment.end()) == 0)
+    throw error_at(yield.place, "yield = " + number_text(yield.number()) +
+                                    ", but the bending stiffness is 0 (remove it, or set a positive moment)");
+  sheet.bends = false;
+  const auto number = std::count_if(model.damping.begin(), model.damping.end(),
+                                    [](const auto& term) { return term->name().starts_with("creases"); });
+  model.damping.push_back(make_creases(number ? "creases_" + std::to_string(number + 1) : "creases",
+                                       {model.mesh, body.first_triangle, sheet.moment, sheet.rest, yield.number()}));
+}
+
 // Adds the plates of mid-edge bending to the sheet, and its angles to the model. `moment` replaces the stiffness along
 // direction 1, and scales the others.
 void add_mid_edges(const PlacedBody& body, const BodyMaterial& material, Model& model, SheetMaterial& sheet) {
@@ -167,6 +183,7 @@ std::unique_ptr<TetElasticity> sheet_elasticity(const PlacedBody& body, const Bo
     sheet.laws.push_back(law_of(body, model.mesh, t, parameters[t]));
     sheet.moment.push_back(moment_of(shell, parameters[t]));
   }
+  if (shell.find("yield")) add_creases(body, model, sheet);
   if (shell["bending"].text() == "mid_edge") add_mid_edges(body, material, model, sheet);
   sheet.held = held;
   return make_sheet_elasticity(model.mesh, body.first_triangle, sheet);

@@ -57,6 +57,10 @@ void add_body(Schema& s) {
            Choices{{"hinge", "mid_edge"}}, Usual{"\"hinge\"", "for cloth"}),
        key("rest", kText, "angles between triangles at rest", Choices{{"mesh", "flat"}},
            Usual{"\"mesh\"", "those of the mesh"}),
+       key("yield", kNumber,
+           "moment per length beyond which a fold stays, as a crease of paper or a bend of sheet metal; default: none. "
+           "Works with `hinge`, backward_euler and quasi_static; damping.stiffness then damps stretching alone",
+           Units{"N"}, kPositive),
        key("weave", kTable, "orthotropic fabric", Members{"weave"})});
   add_section(s,
               {"weave", "weave = { ... } in a shell",

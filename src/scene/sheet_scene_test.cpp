@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "contact/barrier.h"
+#include "dynamics/step_derivatives.h"
 #include "io/atomic_file.h"
 #include "mesh/self_intersection.h"
 #include "mesh/surface.h"
@@ -225,6 +226,37 @@ TEST(SheetScene, SheetAloneBecomesAScene) {
   EXPECT_EQ(turned.simulation.model().pins.size(), 1u);  // upright under this gravity
   const Scene hangs = load_scene(folder.write("upright.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n"));
   EXPECT_EQ(hangs.simulation.model().pins.size(), 1u);
+}
+
+const std::string kFoil = kSheet + "shell = { thickness = 1e-3, moment = 1e-3, yield = 2e-3 }\n" +
+                          "[[body.pin]]\nname = \"edge\"\nwhere = \"x < -0.1\"\n";
+
+TEST(SheetScene, CreasesLoseEnergyAndRestoreWithTheSameBits) {
+  Scene scene = load(kFoil, {"gravity=[0,0,-9.81]"});
+  double loss = 0;
+  const auto step = [&] {
+    const StepReport report = scene.simulation.step();
+    ASSERT_TRUE(is_success(report.status));
+    EXPECT_GE(report.damping_loss, -1e-18);
+    EXPECT_LT(std::abs(report.ledger_error), 1e-15);
+    loss += report.damping_loss;
+  };
+  for (int i = 0; i < 5; ++i) step();
+  EXPECT_GT(loss, 1e-5);
+  const Simulation::Snapshot snapshot = scene.simulation.snapshot();
+  for (int i = 0; i < 3; ++i) step();
+  const std::uint64_t hash = scene.simulation.state_hash();
+  scene.simulation.restore(snapshot);
+  for (int i = 0; i < 3; ++i) step();
+  EXPECT_EQ(scene.simulation.state_hash(), hash);
+  for (const TermDerivatives& of : check_step_derivatives(scene.simulation, 1e-6))
+    EXPECT_TRUE(of.report.passed()) << of.term << " " << of.state;
+}
+
+TEST(SheetScene, RefusesCreasesWithoutHinges) {
+  EXPECT_THAT(refusal(kFoil, {"body.shell.bending=\"mid_edge\""}), HasSubstr("yield needs bending = \"hinge\""));
+  EXPECT_THAT(refusal(kFoil, {"body.shell.moment=0"}), HasSubstr("the bending stiffness is 0"));
+  EXPECT_THAT(refusal(kFoil, {"time.integrator=bdf2"}), HasSubstr("does not advance the internal variables"));
 }
 
 }  // namespace

@@ -131,6 +131,49 @@ void check_momentum(const Subject&, Findings& found) {
   found.expect_small("velocity across", mean_velocity(simulation, 1), 1e-9, "the residual of the steps", "m/s");
 }
 
+// A strip is folded by a hand at x > 0.05 about the edges at x = 0, then released.
+void check_crease(const Subject& subject, Findings& found) {
+  constexpr double kCell = 0.1, kWidth = 0.3, kStiffness = 1e-3, kYield = 5e-3, kAngle = 2;
+  std::string strip;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) strip += formatted("v %g %g 0\n", kCell * (i - 1), kCell * j);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 1; j < 4; ++j) {
+      const int a = 4 * i + j;
+      strip += formatted("f %d %d %d\nf %d %d %d\n", a, a + 4, a + 5, a, a + 5, a + 1);
+    }
+  const TemporaryFolder folder;
+  write_file(folder.path() / "strip.obj", strip);
+  const std::string scene =
+      "gravity = [0, 0, 0]\n[time]\nstep = 0.05\nduration = 1\nintegrator = \"quasi_static\"\n[solver]\ntolerance = "
+      "1e-9\n[[body]]\nmesh = \"strip.obj\"\nshell = { thickness = 1e-3, moment = " +
+      sheet_text(kStiffness * subject.stiffness) + ", yield = " + sheet_text(kYield) +
+      " }\nmaterial = { young = 1e5, poisson = 0, density = 100 }\n[[body.pin]]\nwhere = \"X < 0.05\"\n";
+  const std::string hand =
+      "[[body.pin]]\nwhere = \"abs(X - 0.1) < 0.01\"\nmotion = { displacement = [\"X * (cos(2 * t) - 1)\", 0, \"X * "
+      "sin(2 * t)\"] }\n";
+  write_file(folder.path() / "fold.toml", scene + hand);
+  write_file(folder.path() / "release.toml", scene);
+  Simulation folds = load_scene((folder.path() / "fold.toml").string()).simulation;
+  double loss = 0, moment = 0;
+  for (int i = 0; i < 20; ++i) {
+    const StepReport report = folds.step();
+    loss += report.damping_loss;
+    moment = std::abs(report.resultants.pins[1].moment[1]);
+  }
+  Simulation released = load_scene((folder.path() / "release.toml").string()).simulation;
+  released.restore(folds.snapshot());
+  loss += released.step().damping_loss;
+  const TetMesh& mesh = released.model().mesh;
+  double angle = 0;
+  for (int v = 0; v < mesh.vertex_count(); ++v)
+    if (const Vec3d x = point(released.state().q, v); mesh.rest[v][0] > 0.15) angle += std::atan2(x[2], x[0]) / 4;
+  const double remaining = kAngle - kYield * kCell / kStiffness;
+  found.expect("moment while it flows", {moment, kYield * kWidth, 1e-6 * kYield * kWidth}, "the tolerance", "N m");
+  found.expect("angle after release", {angle, remaining, 1e-6}, "the tolerance", "rad");
+  found.expect("loss", {loss, kYield * kWidth * remaining, 1e-6 * kYield * kWidth}, "the tolerance", "J");
+}
+
 }  // namespace
 
 void add_sheet_checks(std::vector<Check>& checks) {
@@ -174,6 +217,15 @@ void add_sheet_checks(std::vector<Check>& checks) {
                     check_momentum,
                     {},
                     {R"tex(\dot p = 0)tex"}});
+  checks.push_back(
+      {"sheets",
+       "crease",
+       "A strip is folded and released",
+       "A strip of hinges with a yield moment is folded by an angle about one row of edges, then released.",
+       "Perfect plasticity: the rest angle flows at the moment m per length",
+       check_crease,
+       {},
+       {R"tex(\theta_0 = \theta - \frac{m h}{D}, \quad \text{loss} = m\, b\, |\theta_0|)tex"}});
 }
 
 }  // namespace aspic::verify
