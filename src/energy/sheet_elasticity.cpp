@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "energy/membrane_law.h"
+#include "mesh/elements.h"
 
 namespace aspic {
 namespace {
@@ -17,7 +18,8 @@ class SheetElasticity : public TetElasticity {
     const auto begin = mesh.sheet.begin() + first;
     const std::vector<Triangle> corners(begin, begin + static_cast<std::ptrdiff_t>(material.laws.size()));
     const auto& X = mesh.rest;
-    for (const Triangle& t : corners) triangles_.push_back(make_sheet_triangle(t, {X[t[0]], X[t[1]], X[t[2]]}));
+    for (size_t t = 0; t < corners.size(); ++t)
+      triangles_.push_back(make_sheet_triangle(corners[t], rest_corners(mesh, first + static_cast<int>(t))));
     for (const MembraneLaw& law : material.laws) moduli_.emplace_back(law);
     membrane_ = make_membrane(triangles_, material.laws);
     if (!material.bends) return;

@@ -13,6 +13,7 @@
 #include "io/mesh_file.h"
 #include "mesh/box.h"
 #include "mesh/close_corners.h"
+#include "mesh/elements.h"
 #include "mesh/sheet_shapes.h"
 #include "mesh/surface.h"
 #include "mesh/topology.h"
@@ -67,8 +68,7 @@ MembraneLaw law_of(const PlacedBody& body, const TetMesh& mesh, size_t t, const 
   if (!(nu * nu * weft < E))
     throw error_at((*weave)["weft"].place,
                    "weft = " + number_text(weft) + "; must be below young / poisson^2 = " + number_text(E / (nu * nu)));
-  const Triangle& corners = mesh.sheet[body.first_triangle + t];
-  const std::array<Vec3d, 3> X = {mesh.rest[corners[0]], mesh.rest[corners[1]], mesh.rest[corners[2]]};
+  const std::array<Vec3d, 3> X = rest_corners(mesh, body.first_triangle + static_cast<int>(t));
   const Value& along = (*weave)["warp"];
   if (const Vec3d n = cross(X[1] - X[0], X[2] - X[0]), d = along.vector();
       !(norm(cross(n, d)) > kAcross * norm(n) * norm(d)))
@@ -76,6 +76,24 @@ MembraneLaw law_of(const PlacedBody& body, const TetMesh& mesh, size_t t, const 
                                     "'; give a direction along the sheet");
   const PlaneVector warp = direction_in_plane(X, along.vector());
   return OrthotropicSheet{E, weft, nu, (*weave)["shear"].number(), thickness, warp};
+}
+
+double area_of(const TriangleCorners& X) { return 0.5 * norm(cross(X[1] - X[0], X[2] - X[0])); }
+
+// Gives the sheet the rest shapes of texture coordinates, and notes how their areas differ from those of the mesh.
+void add_pattern(const Value& body, std::vector<TriangleCorners> uv, TetMesh& mesh, std::vector<std::string>& notes) {
+  const double scale = body["shell"]["pattern"]["uv_scale"].number();
+  double of_mesh = 0, of_pattern = 0, least = INFINITY, largest = 0;
+  for (size_t t = 0; t < uv.size(); ++t) {
+    for (Vec3d& corner : uv[t]) corner = scale * corner;
+    const double flat = area_of(uv[t]), given = area_of(rest_corners(mesh, static_cast<int>(t)));
+    of_mesh += given, of_pattern += flat;
+    least = std::min(least, flat / given), largest = std::max(largest, flat / given);
+  }
+  mesh.pattern = std::move(uv);
+  notes.push_back("body '" + body["name"].text() + "': the pattern has " + three_digits(of_pattern / of_mesh) +
+                  " of the area of the mesh, its triangles " + three_digits(least) + " to " + three_digits(largest) +
+                  " (uv_scale = " + three_digits(scale * std::sqrt(of_mesh / of_pattern)) + " keeps the area)");
 }
 
 double moment_of(const Value& shell, const MaterialParameters& parameters) {
@@ -139,7 +157,15 @@ BodyMesh make_sheet_mesh(Value& body, MeshLoader& loader) {
   refuse_keys_of_solids(body, {"shell", "a shell is neo_hookean, or has shell.weave", {}, {"viscosity"}});
   const Value* shape = body.find("shape");
   const Place place = (shape ? *shape : body["mesh"]).place;
-  TriMesh surface = shape ? shape_surface(*shape, loader) : thin_mesh_from_file(body, loader, read_tri_mesh);
+  const Value* pattern = body["shell"].find("pattern");
+  if (shape && pattern)
+    throw error_at(pattern->place, "pattern: a shape has no texture coordinates (give an OBJ file as `mesh`)");
+  std::vector<TriangleCorners> uv;
+  const auto read = [&](const std::string& path) {
+    if (pattern) uv = read_uv(path);
+    return read_tri_mesh(path);
+  };
+  TriMesh surface = shape ? shape_surface(*shape, loader) : thin_mesh_from_file(body, loader, read);
   check(surface, body, place);
   if (const std::string why = loader.why_not(surface.triangle_count()); !why.empty())
     throw error_at(body.place, why + " (choose a coarser mesh)");
@@ -157,6 +183,7 @@ BodyMesh make_sheet_mesh(Value& body, MeshLoader& loader) {
   mesh.sheet = surface.triangles;
   const double thickness = body["shell"]["thickness"].number();
   mesh.thickness.assign(mesh.sheet.size(), thickness);
+  if (pattern) add_pattern(body, std::move(uv), mesh, loader.notes);
   if (const double extent = longest_side(bounding_box(mesh.rest)); thickness > kThick * extent)
     loader.notes.push_back("body '" + body["name"].text() + "': its thickness of " + number_text(thickness) +
                            " m is much for a sheet of " + three_digits(extent) +

@@ -10,6 +10,7 @@
 #include "contact/barrier.h"
 #include "dynamics/step_derivatives.h"
 #include "io/atomic_file.h"
+#include "mesh/elements.h"
 #include "mesh/self_intersection.h"
 #include "mesh/surface.h"
 #include "results/run_directory.h"
@@ -251,6 +252,47 @@ TEST(SheetScene, CreasesLoseEnergyAndRestoreWithTheSameBits) {
   EXPECT_EQ(scene.simulation.state_hash(), hash);
   for (const TermDerivatives& of : check_step_derivatives(scene.simulation, 1e-6))
     EXPECT_TRUE(of.report.passed()) << of.term << " " << of.state;
+}
+
+// A unit square of two triangles with texture coordinates of a square whose side is .9, one of them mirrored.
+std::filesystem::path square_with_pattern(const TestFolder& folder, const std::string& shell) {
+  folder.write("square.obj",
+               "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt .45 0\nvt .45 .45\nvt -.45 .45\nvt 0 .45\n"
+               "f 1/1 2/2 3/3\nf 1/1 3/4 4/5\n");
+  return folder.write("scene.toml",
+                      "gravity = [0, 0, 0]\n[time]\nstep = 0.01\nduration = 0.01\n[[body]]\nname = \"square\"\nmesh = "
+                      "\"square.obj\"\nmaterial = { young = 1e6, poisson = 0.3, density = 200 }\nshell = { thickness = "
+                      "1e-3, moment = 0, " +
+                          shell + " }\n");
+}
+
+TEST(SheetScene, PatternIsTheRestShape) {
+  const TestFolder folder;
+  const Scene scene = load_scene(square_with_pattern(folder, "pattern = { uv_scale = 2.0 }"));
+  const Model& model = scene.simulation.model();
+  EXPECT_NEAR(model.mass->total(), 200 * 1e-3 * 0.81, 1e-12);
+  const double s = 1 / 0.9, mu = 1e6 / 2.6, la = 0.3e6 / 0.91;
+  const double psi = mu / 2 * (2 * s * s - 2 - 4 * std::log(s)) + 2 * la * std::log(s) * std::log(s);
+  EXPECT_NEAR(model.elasticity[0]->value(scene.simulation.state().q), 0.81 * 1e-3 * psi, 1e-11);
+  for (int t = 0; t < 2; ++t) {
+    const Mat3d F = deformation_gradient(model.mesh, t, scene.simulation.state().q);
+    EXPECT_LT(squared_norm(transpose(F) * F - Mat3d{{s * s, 0, 0, 0, s * s, 0, 0, 0, 1}}), 1e-24);
+    EXPECT_GT(F(0, 0), 0.9);  // without a rotation
+  }
+  EXPECT_THAT(scene.notes, testing::Contains(HasSubstr("the pattern has 0.81 of the area of the mesh")));
+}
+
+TEST(SheetScene, RefusesPatternsWithoutTextureCoordinates) {
+  EXPECT_THAT(refusal(kSheet + "shell = { thickness = 1e-3, pattern = { uv_scale = 1.0 } }\n"),
+              HasSubstr("a shape has no texture coordinates"));
+  const TestFolder folder;
+  const std::filesystem::path scene = square_with_pattern(folder, "pattern = { uv_scale = 2.0 }");
+  EXPECT_THAT(refusal_of(scene, {.overrides = {"body.shell.pattern.uv_scale=0"}}), HasSubstr("must be > 0"));
+  folder.write("square.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  EXPECT_THAT(refusal_of(scene), HasSubstr("square.obj:4: a corner has no texture coordinates"));
+  const std::filesystem::path off = folder.write("square.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  EXPECT_THAT(refusal_of(scene, {.overrides = {"body.mesh=\"" + off.string() + "\""}}),
+              HasSubstr("Wavefront OBJ with UVs"));
 }
 
 TEST(SheetScene, RefusesCreasesWithoutHinges) {
