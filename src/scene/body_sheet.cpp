@@ -11,6 +11,7 @@
 #include "energy/sheet_elasticity.h"
 #include "energy/wind.h"
 #include "io/mesh_file.h"
+#include "math/svd3.h"
 #include "mesh/box.h"
 #include "mesh/close_corners.h"
 #include "mesh/elements.h"
@@ -58,12 +59,43 @@ void check(const TriMesh& mesh, const Value& body, const Place& place) {
                               " vertices belong to no triangle; remove them (aspic check MESH --repair -o MENDED)");
 }
 
+StretchLimit limit_of(const Value& shell, double young) {
+  const Value* limit = shell.find("limit");
+  if (!limit) return {};
+  const Value& to = limit->is_number() ? *limit : (*limit)["to"];
+  const Value* from = limit->is_number() ? nullptr : limit->find("from");
+  if (!(to.number() > 1))
+    throw error_at(to.place, "limit = " + number_text(to.number()) +
+                                 "; the largest stretch must be above 1 (try 1.1 for at most 10 %)");
+  if (from && !(from->number() >= 1 && from->number() < to.number()))
+    throw error_at(from->place, "from = " + number_text(from->number()) + "; must be at least 1 and below to = " +
+                                    number_text(to.number()) + " (remove it for the mean of 1 and to)");
+  return {from ? from->number() : 0.5 * (1 + to.number()), to.number(), young};
+}
+
+// Throws InvalidInput if a triangle is stretched beyond the limit at the start.
+void check_limit(const PlacedBody& body, const StretchLimit& limit, const Model& model) {
+  std::vector<double> x(3 * model.mesh.rest.size());
+  for (size_t v = 0; v < body.start.size(); ++v)
+    for (int r = 0; r < 3; ++r)
+      x[3 * static_cast<size_t>(body.model_vertex(static_cast<int>(v))) + r] = body.start[v][r];
+  for (size_t t = 0; t < body.mesh.sheet.size(); ++t) {
+    const int element = model.mesh.tet_count() + body.first_triangle + static_cast<int>(t);
+    const Mat3d F = deformation_gradient(model.mesh, element, x);
+    if (const double s = svd3(F).s[0]; !(s < limit.to))
+      throw error_at(body.scene["shell"]["limit"].place,
+                     "limit: triangle " + std::to_string(t) + " of body '" + body.name() + "' is stretched by " +
+                         three_digits(s) + " at the start; the limit is " + number_text(limit.to) +
+                         " (choose a higher limit, a larger pattern, or a smaller deformation)");
+  }
+}
+
 MembraneLaw law_of(const PlacedBody& body, const TetMesh& mesh, size_t t, const MaterialParameters& parameters) {
   const Value& shell = body.scene["shell"];
   const double E = young_modulus(parameters.lame), nu = poisson_ratio(parameters.lame);
   const double thickness = shell["thickness"].number();
   const Value* weave = shell.find("weave");
-  if (!weave) return IsotropicSheet{E, nu, thickness};
+  if (!weave) return IsotropicSheet{E, nu, thickness, limit_of(shell, E)};
   const double weft = (*weave)["weft"].number();
   if (!(nu * nu * weft < E))
     throw error_at((*weave)["weft"].place,
@@ -75,7 +107,7 @@ MembraneLaw law_of(const PlacedBody& body, const TetMesh& mesh, size_t t, const 
     throw error_at(along.place, "warp is normal to triangle " + std::to_string(t) + " of body '" + body.name() +
                                     "'; give a direction along the sheet");
   const PlaneVector warp = direction_in_plane(X, along.vector());
-  return OrthotropicSheet{E, weft, nu, (*weave)["shear"].number(), thickness, warp};
+  return OrthotropicSheet{E, weft, nu, (*weave)["shear"].number(), thickness, warp, limit_of(shell, E)};
 }
 
 double area_of(const TriangleCorners& X) { return 0.5 * norm(cross(X[1] - X[0], X[2] - X[0])); }
@@ -213,6 +245,7 @@ std::unique_ptr<TetElasticity> sheet_elasticity(const PlacedBody& body, const Bo
   if (shell.find("yield")) add_creases(body, model, sheet);
   if (shell["bending"].text() == "mid_edge") add_mid_edges(body, material, model, sheet);
   sheet.held = held;
+  if (shell.find("limit")) check_limit(body, limit_of(shell, 0), model);
   return make_sheet_elasticity(model.mesh, body.first_triangle, sheet);
 }
 

@@ -10,6 +10,7 @@
 #include "contact/barrier.h"
 #include "dynamics/step_derivatives.h"
 #include "io/atomic_file.h"
+#include "math/svd3.h"
 #include "mesh/elements.h"
 #include "mesh/self_intersection.h"
 #include "mesh/surface.h"
@@ -293,6 +294,40 @@ TEST(SheetScene, RefusesPatternsWithoutTextureCoordinates) {
   const std::filesystem::path off = folder.write("square.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
   EXPECT_THAT(refusal_of(scene, {.overrides = {"body.mesh=\"" + off.string() + "\""}}),
               HasSubstr("Wavefront OBJ with UVs"));
+}
+
+// A soft cloth hangs from its upper edge.
+TEST(SheetScene, StretchesStayBelowTheirLimit) {
+  const auto largest = [&](const std::string& limit) {
+    Scene scene =
+        load(kSheet + "shell = { thickness = 1e-3" + limit + " }\n[[body.pin]]\nname = \"top\"\nwhere = \"y > 0.19\"\n",
+             {"body.material.young=5e3"});
+    double most = 0;
+    for (int i = 0; i < 20; ++i) {
+      EXPECT_TRUE(is_success(scene.simulation.step().status)) << i;
+      const Model& model = scene.simulation.model();
+      for (int t = 0; t < model.mesh.element_count(); ++t)
+        most = std::max(most, svd3(deformation_gradient(model.mesh, t, scene.simulation.state().q)).s[0]);
+    }
+    return most;
+  };
+  EXPECT_GT(largest(""), 1.3);
+  const double most = largest(", limit = 1.1");
+  EXPECT_LT(most, 1.1);
+  EXPECT_GT(most, 1.05);
+}
+
+TEST(SheetScene, RefusesLimitsOfStretches) {
+  const auto with = [](const std::string& limit, const std::string& more = "") {
+    return refusal(kSheet + "shell = { thickness = 1e-3, limit = " + limit + " }\n" + more);
+  };
+  EXPECT_EQ(with("1.1"), "");
+  EXPECT_EQ(with("{ from = 1.0, to = 1.1 }"), "");
+  EXPECT_THAT(with("1.0"), HasSubstr("limit = 1; the largest stretch must be above 1"));
+  EXPECT_THAT(with("{ from = 1.2, to = 1.1 }"), HasSubstr("from = 1.2; must be at least 1 and below to = 1.1"));
+  EXPECT_THAT(with("{ from = 0.9, to = 1.1 }"), HasSubstr("from = 0.9; must be at least 1"));
+  EXPECT_THAT(with("{ from = 1.05 }"), HasSubstr("needs the key 'to'"));
+  EXPECT_THAT(with("1.1", "deform = { scale = [1.2, 1, 1] }\n"), HasSubstr("is stretched by 1.2 at the start"));
 }
 
 TEST(SheetScene, RefusesCreasesWithoutHinges) {
