@@ -7,6 +7,7 @@
 #pragma once
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "energy/energy.h"
@@ -28,5 +29,20 @@ class HingeBending : public SteadyEnergy {
 // weighted by area. V is +inf where a triangle with a hinge is collapsed. Requires positive areas at rest.
 std::unique_ptr<HingeBending> make_hinge_bending(std::span<const Vec3d> rest, std::span<const Triangle> triangles,
                                                  std::span<const double> moment, RestAngles rest_angles);
+
+// Triangles of mesh.sheet whose rest angles flow where the bending moment exceeds a limit.
+struct CreasedSheet {
+  const TetMesh& mesh;
+  int first;                       // triangle
+  std::span<const double> moment;  // D of each triangle [N m]
+  RestAngles rest;                 // at the start of the simulation
+  double yield;                    // limit of the moment per length [N]
+};
+
+// Returns the bending of the sheet as a dissipation potential with internal variables, the elastic parts e of theta -
+// theta0. With t = e at the start + the change of theta in the step and the largest elastic part s = yield l / k,
+//   D = sum of k t^2 / 2 if |t| <= s, else k s (|t| - s / 2),  minus the energy sum of k e^2 / 2 at the start.
+// The loss k s |change of theta0| is that of rest angles that follow theta.
+std::unique_ptr<Energy> make_creases(std::string name, const CreasedSheet& sheet);
 
 }  // namespace aspic

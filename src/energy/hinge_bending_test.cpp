@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "energy/hinge_angle.h"
+#include "energy/internal_variables.h"
 #include "energy/sheet_grid_test.h"
 
 namespace aspic {
@@ -188,6 +190,68 @@ TEST(HingeBending, CollapsedTriangleIsInfinite) {
 TEST(HingeBending, EqualBitsForAnyThreadCount) {
   const SheetGrid grid = sheet_grid(40, 30, 0.1, 0.2);
   expect_equal_bits_for_threads(*bending_of(grid), shaken_sheet(grid, 0.03));
+}
+
+std::unique_ptr<Energy> creases_of(const SheetGrid& grid, double yield) {
+  const TetMesh mesh{.rest = grid.rest, .tets = {}, .region = {}, .sheet = grid.triangles};
+  return make_creases("creases", {mesh, 0, std::vector<double>(grid.triangles.size(), 0.1), RestAngles::flat, yield});
+}
+
+TEST(Creases, DerivativesMatchDifferences) {
+  const SheetGrid grid = curved_grid(4, 3);
+  const std::vector<double> start = shaken_sheet(grid, 0.02), x = shaken_sheet(grid, 0.15, 4);
+  for (const double yield : {0.02, 0.1, 10.0})  // all, some and none yield
+    expect_sheet_derivatives(*creases_of(grid, yield), x, 0.01, {.start = start});
+  expect_equal_bits_for_threads(*creases_of(grid, 0.1), x, {.start = start});
+  for (const Definiteness kind : {Definiteness::clamped, Definiteness::absolute})
+    EXPECT_GT(dense_hessian(*creases_of(grid, 0.1), x, kind, {.start = start}).eigenvalues().minCoeff(), -1e-11);
+}
+
+TEST(Creases, BelowTheLimitIsHingeBending) {
+  const SheetGrid grid = curved_grid(4, 3);
+  const std::vector<double> flat(grid.triangles.size(), 0.1), x = shaken_sheet(grid, 0.1);
+  const auto V = make_hinge_bending(grid.rest, grid.triangles, flat, RestAngles::flat);
+  const auto D = creases_of(grid, 100);
+  const auto& variables = dynamic_cast<const InternalVariables&>(*D);
+  const std::vector<double> start = flattened(grid.rest);
+  std::vector<double> z(variables.internal_range().size());
+  variables.write_initial(start, z);
+  EXPECT_NEAR(variables.stored_energy(z), V->value(start), 1e-14);
+  ActiveTerm term(*D, {.start = start});
+  variables.begin_internal(z, 0, term.context());
+  EXPECT_NEAR(term.value(x), V->value(x) - V->value(start), 1e-13);
+  std::vector<double> end(z.size());
+  variables.end_internal(x, term.context(), end);
+  EXPECT_NEAR(variables.stored_energy(end), V->value(x), 1e-13);
+}
+
+// Two right-angled triangles are folded along their diagonal beyond the limit, and back.
+TEST(Creases, LossIsLimitTimesChangeOfRestAngle) {
+  const SheetGrid grid = sheet_grid(1, 1, 1);
+  const double yield = 0.05, moment = yield * std::sqrt(2.0), stiffness = 0.1 * 2, elastic = moment / stiffness;
+  const auto folded = [&](double angle) {
+    std::vector<double> x = flattened(grid.rest);
+    x[3] = 0.5 + 0.5 * std::cos(angle), x[4] = 0.5 - 0.5 * std::cos(angle), x[5] = std::sqrt(0.5) * std::sin(angle);
+    return x;
+  };
+  const auto D = creases_of(grid, yield);
+  const auto& variables = dynamic_cast<const InternalVariables&>(*D);
+  std::vector<double> z(variables.internal_range().size()), start = folded(0);
+  variables.write_initial(start, z);
+  double expected_rest = 0;
+  for (const double angle : {-0.2, -1.5, -1.3, 0.4, 3.0}) {
+    ActiveTerm term(*D, {.start = start});
+    const std::vector<double> before = z;
+    variables.begin_internal(before, 0, term.context());
+    const std::vector<double> end = folded(angle);
+    variables.end_internal(end, term.context(), z);
+    const InternalEnergies energies = variables.internal_energies({start, end, z}, term.context());
+    const double rest = std::clamp(expected_rest, angle - elastic, angle + elastic);
+    EXPECT_NEAR(energies.loss, moment * std::abs(rest - expected_rest), 1e-13) << angle;
+    EXPECT_NEAR(energies.gain + energies.loss, term.value(end), 1e-13);
+    expected_rest = rest;
+    start = end;
+  }
 }
 
 }  // namespace

@@ -151,6 +151,7 @@ class SheetMembrane : public Membrane {
       const SheetFrame frame(d);
       SheetHessian A = e.moduli.hessian(d, frame);
       const bool is_modified = is_covered(e.corners, projection) && e.moduli.project(d, frame, projection.kind, A);
+      e.moduli.add_limit(d, frame, A);
       blocks_[t].add(SheetBlocks(e, frame, A), scale * e.weight(), H);
       return is_modified;
     });

@@ -2,6 +2,7 @@
 // constant deformation gradient F (3x2) of the rest plane.
 #pragma once
 #include <array>
+#include <limits>
 #include <memory>
 #include <variant>
 #include <vector>
@@ -30,12 +31,20 @@ SheetTriangle make_sheet_triangle(const Triangle& corners, const std::array<Plan
 // {1, 0} for the normal of the plane.
 PlaneVector direction_in_plane(const std::array<Vec3d, 3>& rest, const Vec3d& direction);
 
+// Limit of the principal stretches s. It adds to the density of a sheet, for each s > from,
+//   -k (s - from)^2 ln((to - s) / (to - from)),  +inf from s = to on.
+struct StretchLimit {
+  double from = 1, to = std::numeric_limits<double>::infinity();  // 1 <= from < to; infinite: no limit
+  double stiffness = 0;                                           // k [Pa]
+};
+
 // Neo-Hookean sheet in plane stress, exact for small strains; +inf for a collapsed triangle:
 //   psi = mu/2 (tr C - 2 - 2 ln J) + la/2 (ln J)^2,  J^2 = det C,  mu = E / (2 (1 + nu)),  la = E nu / (1 - nu^2)
 struct IsotropicSheet {
   double young;      // E [Pa]
   double poisson;    // nu, in [0, 1)
   double thickness;  // [m]
+  StretchLimit limit = {};
 };
 
 // St. Venant-Kirchhoff sheet with the constants of woven fabrics. It is finite for a collapsed triangle:
@@ -47,6 +56,7 @@ struct OrthotropicSheet {
   double shear;                   // G [Pa]
   double thickness;               // [m]
   PlaneVector warp = {1, 0};      // direction of the warp in the rest plane, a unit vector
+  StretchLimit limit = {};
 };
 
 using MembraneLaw = std::variant<IsotropicSheet, OrthotropicSheet>;

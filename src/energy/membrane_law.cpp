@@ -10,6 +10,7 @@
 namespace aspic {
 namespace {
 
+constexpr double kEqual = 1e-5;       // relative difference of stretches below which they count as equal
 constexpr double kTolerance = 1e-12;  // of negative eigenvalues, relative to the largest diagonal entry
 
 // dS = D (dE11, dE22, 2 dE12)
@@ -81,6 +82,50 @@ double filtered(double l, Definiteness kind, double floor) {
   return std::max(kind == Definiteness::absolute ? std::abs(l) : l, floor);
 }
 
+// The principal stretches s and axes: F = u1 s1 v1' + u2 s2 v2'. Scalings u_i v_i', then the flip u1 v2' + u2 v1' and
+// the twist u1 v2' - u2 v1', divided by sqrt(2), are the vectors of `modes`, 4 numbers each.
+struct PrincipalModes {
+  double s1, s2;
+  std::array<double, 16> modes;
+
+  PrincipalModes(const SheetDeformation& d, const SheetFrame& frame) {
+    const Eigen2 principal = symmetric_eigen(d.C);
+    const double v1[2] = {principal.cos, principal.sin}, v2[2] = {-principal.sin, principal.cos};
+    s1 = std::sqrt(principal.high), s2 = d.J / s1;
+    double u1[2], u2[2];
+    for (int r = 0; r < 2; ++r) u1[r] = (frame.G[r] * v1[0] + frame.G[r + 2] * v1[1]) / s1;
+    u2[0] = -u1[1], u2[1] = u1[0];  // G has a positive determinant
+    const double h = std::sqrt(0.5);
+    for (int c = 0; c < 2; ++c)
+      for (int r = 0; r < 2; ++r) {
+        const double across = u1[r] * v2[c], back = u2[r] * v1[c];
+        const int k = r + 2 * c;
+        modes[k] = u1[r] * v1[c];
+        modes[k + 4] = u2[r] * v2[c];
+        modes[k + 8] = h * (across + back);
+        modes[k + 12] = h * (across - back);
+      }
+  }
+};
+
+// The energy of a stretch and its derivatives.
+struct LimitLaw {
+  double energy = 0, slope = 0, curvature = 0;
+
+  LimitLaw(const StretchLimit& limit, double s) {
+    const double d = s - limit.from, e = limit.to - s;
+    if (!(d > 0)) return;
+    if (!(e > 0)) {
+      energy = std::numeric_limits<double>::infinity();
+      return;
+    }
+    const double L = std::log(e / (limit.to - limit.from)), k = limit.stiffness, q = d / e;
+    energy = -k * d * d * L;
+    slope = k * d * (q - 2 * L);
+    curvature = k * (4 * q + q * q - 2 * L);
+  }
+};
+
 }  // namespace
 
 SheetDeformation::SheetDeformation(const Vec3d& first, const Vec3d& second)
@@ -111,14 +156,54 @@ SheetModuli::SheetModuli(const MembraneLaw& law) : is_orthotropic_(std::holds_al
     ASPIC_CHECK(s.warp_young > 0 && s.weft_young > 0 && share > 0);
     const double Q2 = s.weft_young / share;
     c_ = {s.warp_young / share, Q2, s.poisson * Q2, s.shear};
+    limit_ = s.limit;
   } else {
     const IsotropicSheet& s = std::get<IsotropicSheet>(law);
     ASPIC_CHECK(0 <= s.poisson && s.poisson < 1);
     c_ = {s.young / (2 * (1 + s.poisson)), s.young * s.poisson / (1 - s.poisson * s.poisson), 0, 0};
+    limit_ = s.limit;
   }
 }
 
+bool SheetModuli::is_limited(const SheetDeformation& d) const {
+  return limit_.stiffness > 0 && std::max(d.C.xx, d.C.yy) + std::abs(d.C.xy) > limit_.from * limit_.from;
+}
+
 double SheetModuli::density(const SheetDeformation& d) const {
+  if (!is_limited(d)) return law_density(d);
+  const double s1 = std::sqrt(symmetric_eigen(d.C).high);
+  return law_density(d) + LimitLaw(limit_, s1).energy + LimitLaw(limit_, d.J / s1).energy;
+}
+
+Sym2 SheetModuli::stress(const SheetDeformation& d) const {
+  Sym2 S = law_stress(d);
+  if (!is_limited(d)) return S;
+  const Eigen2 principal = symmetric_eigen(d.C);
+  const double s1 = std::sqrt(principal.high), s2 = d.J / s1;
+  const LimitLaw first(limit_, s1), second(limit_, s2);
+  if (first.slope == 0) return S;
+  const Sym2 more =
+      from_eigen({first.slope / s1, second.slope > 0 ? second.slope / s2 : 0, principal.cos, principal.sin});
+  return {S.xx + more.xx, S.yy + more.yy, S.xy + more.xy};
+}
+
+void SheetModuli::add_limit(const SheetDeformation& d, const SheetFrame& frame, SheetHessian& H) const {
+  if (!is_limited(d)) return;
+  const PrincipalModes p(d, frame);
+  const LimitLaw first(limit_, p.s1), second(limit_, p.s2);
+  if (first.slope == 0) return;
+  const double apart = p.s1 - p.s2;
+  const double flip =
+      apart > kEqual * p.s1 ? (first.slope - second.slope) / apart : LimitLaw(limit_, 0.5 * (p.s1 + p.s2)).curvature;
+  const double values[4] = {first.curvature, second.curvature, flip, (first.slope + second.slope) / (p.s1 + p.s2)};
+  for (int k = 0; k < 4; ++k)
+    for (int j = 0; j < 4; ++j)
+      for (int i = 0; i < 4; ++i) H.in_plane[i + 4 * j] += values[k] * p.modes[4 * k + i] * p.modes[4 * k + j];
+  const Sym2 all = stress(d), own = law_stress(d);
+  H.normal = {H.normal.xx + all.xx - own.xx, H.normal.yy + all.yy - own.yy, H.normal.xy + all.xy - own.xy};
+}
+
+double SheetModuli::law_density(const SheetDeformation& d) const {
   if (is_orthotropic_) {
     const double e1 = 0.5 * (d.C.xx - 1), e2 = 0.5 * (d.C.yy - 1);
     return 0.5 * (c_[0] * e1 * e1 + c_[1] * e2 * e2 + c_[3] * d.C.xy * d.C.xy) + c_[2] * e1 * e2;
@@ -128,7 +213,7 @@ double SheetModuli::density(const SheetDeformation& d) const {
   return 0.5 * c_[0] * (d.C.xx + d.C.yy - 2) + (0.5 * c_[1] * L - c_[0]) * L;
 }
 
-Sym2 SheetModuli::stress(const SheetDeformation& d) const {
+Sym2 SheetModuli::law_stress(const SheetDeformation& d) const {
   if (is_orthotropic_) {
     const double e1 = 0.5 * (d.C.xx - 1), e2 = 0.5 * (d.C.yy - 1);
     return {c_[0] * e1 + c_[2] * e2, c_[2] * e1 + c_[1] * e2, c_[3] * d.C.xy};
@@ -140,7 +225,7 @@ Sym2 SheetModuli::stress(const SheetDeformation& d) const {
 
 SheetHessian SheetModuli::hessian(const SheetDeformation& d, const SheetFrame& frame) const {
   if (is_orthotropic_) {
-    const Sym2 S = stress(d);
+    const Sym2 S = law_stress(d);
     return {in_plane_hessian(frame.G, S, {c_[0], c_[1], c_[2], 0, 0, c_[3]}), S};
   }
   const double p = c_[1] * std::log(d.J) - c_[0];
@@ -148,33 +233,23 @@ SheetHessian SheetModuli::hessian(const SheetDeformation& d, const SheetFrame& f
   return {in_plane_hessian(frame.G, S, neo_hookean_tangent(Ci, c_[1], p)), S};
 }
 
-// In the principal axes u_i of F F' and v_i of C, with the stretches s_i and psi_i = dpsi/ds_i: the scalings u_i v_i'
-// couple, the flip u1 v2' + u2 v1' has the eigenvalue (psi_1 - psi_2) / (s1 - s2) and the twist u1 v2' - u2 v1' has
-// (psi_1 + psi_2) / (s1 + s2) [Smith 2019].
+// In the principal axes, see PrincipalModes, with psi_i = dpsi/ds_i: the scalings couple, the flip has the eigenvalue
+// (psi_1 - psi_2) / (s1 - s2) and the twist has (psi_1 + psi_2) / (s1 + s2) [Smith 2019].
 SymmetricEigen<4> SheetModuli::in_plane_eigen(const SheetDeformation& d, const SheetFrame& frame,
                                               const SheetHessian& H) const {
   if (is_orthotropic_) return symmetric_eigen<4>(H.in_plane);
-  const Eigen2 principal = symmetric_eigen(d.C);
-  const double v1[2] = {principal.cos, principal.sin}, v2[2] = {-principal.sin, principal.cos};
-  const double s1 = std::sqrt(principal.high), s2 = d.J / s1;
+  const PrincipalModes principal(d, frame);
+  const double s1 = principal.s1, s2 = principal.s2;
   const double mu = c_[0], la = c_[1], p = la * std::log(d.J) - mu;
-  double u1[2], u2[2];
-  for (int r = 0; r < 2; ++r) u1[r] = (frame.G[r] * v1[0] + frame.G[r + 2] * v1[1]) / s1;
-  u2[0] = -u1[1], u2[1] = u1[0];  // G has a positive determinant
-
   const Eigen2 scaling = symmetric_eigen(Sym2{mu + (la - p) / (s1 * s1), mu + (la - p) / (s2 * s2), la / d.J});
   SymmetricEigen<4> e;
   e.values = {scaling.high, scaling.low, mu - p / d.J, mu + p / d.J};
-  const double h = std::sqrt(0.5);
-  for (int c = 0; c < 2; ++c)
-    for (int r = 0; r < 2; ++r) {
-      const double first = u1[r] * v1[c], second = u2[r] * v2[c], across = u1[r] * v2[c], back = u2[r] * v1[c];
-      const int k = r + 2 * c;
-      e.vectors[k] = scaling.cos * first + scaling.sin * second;
-      e.vectors[k + 4] = scaling.cos * second - scaling.sin * first;
-      e.vectors[k + 8] = h * (across + back);
-      e.vectors[k + 12] = h * (across - back);
-    }
+  e.vectors = principal.modes;
+  for (int k = 0; k < 4; ++k) {
+    const double first = principal.modes[k], second = principal.modes[k + 4];
+    e.vectors[k] = scaling.cos * first + scaling.sin * second;
+    e.vectors[k + 4] = scaling.cos * second - scaling.sin * first;
+  }
   return e;
 }
 

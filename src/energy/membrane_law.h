@@ -40,15 +40,23 @@ class SheetModuli {
 
   double density(const SheetDeformation& d) const;  // psi [J/m^3]
   Sym2 stress(const SheetDeformation& d) const;     // second Piola-Kirchhoff stress S = 2 dpsi/dC [Pa]
-  SheetHessian hessian(const SheetDeformation& d, const SheetFrame& frame) const;
-  // Modifies H, the Hessian at d, unless it is positive semidefinite. Returns whether it did.
+  SheetHessian hessian(const SheetDeformation& d, const SheetFrame& frame) const;  // without the limit of stretches
+  // Modifies H, the Hessian at d without the limit of stretches, unless it is positive semidefinite. Returns whether it
+  // did.
   bool project(const SheetDeformation& d, const SheetFrame& frame, Definiteness kind, SheetHessian& H) const;
 
+  // Adds the Hessian of the limit of stretches, which is positive semidefinite.
+  void add_limit(const SheetDeformation& d, const SheetFrame& frame, SheetHessian& H) const;
+
  private:
+  bool is_limited(const SheetDeformation& d) const;     // false: no stretch is near the limit
+  double law_density(const SheetDeformation& d) const;  // without the limit
+  Sym2 law_stress(const SheetDeformation& d) const;
   SymmetricEigen<4> in_plane_eigen(const SheetDeformation& d, const SheetFrame& frame, const SheetHessian& H) const;
 
   bool is_orthotropic_;
   std::array<double, 4> c_;  // mu and la, or Q1, Q2, Q12 and G
+  StretchLimit limit_;
 };
 
 }  // namespace aspic

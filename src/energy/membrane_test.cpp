@@ -65,6 +65,41 @@ TEST(Membrane, DerivativesMatchDifferences) {
       expect_sheet_derivatives(*membrane_of(grid, law), shaken_sheet(grid, amount), 0.1);
 }
 
+MembraneLaw limited(MembraneLaw law, double from, double to) {
+  std::visit([&](auto& sheet) { sheet.limit = {from, to, 3}; }, law);
+  return law;
+}
+
+TEST(Membrane, LimitOfStretchesHasCorrectDerivatives) {
+  const SheetGrid grid = sheet_grid(4, 3, 0.5, 0.2);
+  std::vector<double> x = shaken_sheet(grid, 0.05);
+  for (double& xi : x) xi *= 1.15;
+  for (const MembraneLaw& law : {limited(kRubber, 1.1, 2.5), limited(kWoven, 1.1, 2.5)}) {
+    const auto V = membrane_of(grid, law);
+    EXPECT_TRUE(std::isfinite(V->value(x)));
+    expect_sheet_derivatives(*V, x, 0.1);
+    expect_sheet_derivatives(*V, stretched(grid, 1.3, 1.3), 0.1);  // equal stretches
+    expect_sheet_derivatives(*V, stretched(grid, 1.3, 1.3 + 1e-6), 0.1);
+    for (const Definiteness kind : {Definiteness::clamped, Definiteness::absolute})
+      EXPECT_GT(dense_hessian(*V, x, kind).eigenvalues().minCoeff(), -1e-11);
+  }
+}
+
+TEST(Membrane, LimitOfStretchesIsClosedForm) {
+  const SheetGrid grid = sheet_grid(3, 3, 0.3, 0.2);
+  const auto V = membrane_of(grid, kRubber), L = membrane_of(grid, limited(kRubber, 1.1, 1.5));
+  const auto f = [](double s) { return -3 * (s - 1.1) * (s - 1.1) * std::log((1.5 - s) / 0.4); };
+  const std::vector<double> free = stretched(grid, 1.09, 0.8), one = stretched(grid, 1.4, 0.8),
+                            both = stretched(grid, 1.4, 1.2);
+  EXPECT_EQ(L->value(free), V->value(free));
+  double area = 0;
+  for (const Triangle& c : grid.triangles)
+    area += make_sheet_triangle(c, {grid.rest[c[0]], grid.rest[c[1]], grid.rest[c[2]]}).area;
+  EXPECT_NEAR(L->value(one) - V->value(one), area * kRubber.thickness * f(1.4), 1e-13);
+  EXPECT_NEAR(L->value(both) - V->value(both), area * kRubber.thickness * (f(1.4) + f(1.2)), 1e-13);
+  EXPECT_EQ(L->value(stretched(grid, 1.5 + 1e-9, 1)), INFINITY);
+}
+
 TEST(Membrane, IgnoresRigidMotions) {
   const SheetGrid grid = sheet_grid(4, 3, 0.5, 0.2);
   const std::vector<double> x = shaken_sheet(grid, 0.2);

@@ -355,8 +355,8 @@ PlateStiffness plate_stiffness(const MembraneLaw& law) {
     return {r * woven->warp_young, r * woven->weft_young, r * woven->poisson * woven->weft_young, s * woven->shear,
             woven->warp};
   }
-  const auto& [E, nu, t] = std::get<IsotropicSheet>(law);
-  const double D = E * std::pow(t, 3) / (12 * (1 - nu * nu));
+  const IsotropicSheet& sheet = std::get<IsotropicSheet>(law);
+  const double nu = sheet.poisson, D = sheet.young * std::pow(sheet.thickness, 3) / (12 * (1 - nu * nu));
   return {D, D, nu * D, 0.5 * (1 - nu) * D};
 }
 

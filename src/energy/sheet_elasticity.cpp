@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "energy/membrane_law.h"
+#include "mesh/elements.h"
 
 namespace aspic {
 namespace {
@@ -17,9 +18,11 @@ class SheetElasticity : public TetElasticity {
     const auto begin = mesh.sheet.begin() + first;
     const std::vector<Triangle> corners(begin, begin + static_cast<std::ptrdiff_t>(material.laws.size()));
     const auto& X = mesh.rest;
-    for (const Triangle& t : corners) triangles_.push_back(make_sheet_triangle(t, {X[t[0]], X[t[1]], X[t[2]]}));
+    for (size_t t = 0; t < corners.size(); ++t)
+      triangles_.push_back(make_sheet_triangle(corners[t], rest_corners(mesh, first + static_cast<int>(t))));
     for (const MembraneLaw& law : material.laws) moduli_.emplace_back(law);
     membrane_ = make_membrane(triangles_, material.laws);
+    if (!material.bends) return;
     if (material.plates.empty())
       bending_ = make_hinge_bending(X, corners, material.moment, material.rest);
     else
@@ -30,23 +33,23 @@ class SheetElasticity : public TetElasticity {
   std::string_view name() const override { return "elastic"; }
   void add_couplings(Couplings& couplings) const override {
     membrane_->add_couplings(couplings);
-    bending_->add_couplings(couplings);
+    if (bending_) bending_->add_couplings(couplings);
   }
   void bind(const BlockPattern& pattern) override {
     membrane_->bind(pattern);
-    bending_->bind(pattern);
+    if (bending_) bending_->bind(pattern);
   }
   double value(Positions x, const Context& context) const override {
-    return membrane_->value(x, context) + bending_->value(x, context);
+    return membrane_->value(x, context) + (bending_ ? bending_->value(x, context) : 0);
   }
   void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override {
     membrane_->add_gradient(x, context, scale, g);
-    bending_->add_gradient(x, context, scale, g);
+    if (bending_) bending_->add_gradient(x, context, scale, g);
   }
   int add_hessian(Positions x, const Context& context, double scale, const Projection& projection,
                   BlockSparse& H) const override {
     return membrane_->add_hessian(x, context, scale, projection, H) +
-           bending_->add_hessian(x, context, scale, projection, H);
+           (bending_ ? bending_->add_hessian(x, context, scale, projection, H) : 0);
   }
 
   double min_det_F(Positions x) const override {
@@ -92,7 +95,7 @@ class SheetElasticity : public TetElasticity {
   std::vector<SheetTriangle> triangles_;
   std::vector<SheetModuli> moduli_;
   std::unique_ptr<Membrane> membrane_;
-  std::unique_ptr<SteadyEnergy> bending_;
+  std::unique_ptr<SteadyEnergy> bending_;  // null: none
 };
 
 }  // namespace

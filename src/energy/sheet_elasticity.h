@@ -14,6 +14,7 @@ struct SheetMaterial {
   std::vector<MembraneLaw> laws;  // one per triangle
   std::vector<double> moment;     // bending stiffness of each triangle [N m]
   RestAngles rest = RestAngles::of_rest;
+  bool bends = true;  // false: bending is another term, see make_creases()
   // Mid-edge bending, see MidEdgeSheet. Empty: hinges.
   std::vector<PlateStiffness> plates = {};  // one per triangle
   int first_angle_row = 0;

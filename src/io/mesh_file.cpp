@@ -217,6 +217,13 @@ TetMesh read_line_mesh(const std::string& path) {
   return mesh;
 }
 
+std::vector<std::array<Vec3d, 3>> read_uv(const std::string& path) {
+  if (format_of(path).extension != ".obj")
+    throw InvalidInput(path + ": has no texture coordinates that Aspic reads; export it as Wavefront OBJ with UVs");
+  check_memory(path);
+  return parse_obj_uv(path, read_file(path));
+}
+
 TriMesh read_tri_mesh(const std::string& path) {
   auto mesh = read_mesh(path);
   if (auto* triangles = std::get_if<TriMesh>(&mesh)) return std::move(*triangles);

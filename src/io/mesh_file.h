@@ -27,6 +27,10 @@ TetMesh read_tet_mesh(const std::string& path, std::vector<std::string>* notes =
 // Reads triangles, or the boundary of the tets. Throws InvalidInput like read_mesh().
 TriMesh read_tri_mesh(const std::string& path);
 
+// Reads the texture coordinates (u, v, 0) of the corners of each triangle of an OBJ file. Throws InvalidInput like
+// read_mesh(), and if a triangle has none, or no area in them.
+std::vector<std::array<Vec3d, 3>> read_uv(const std::string& path);
+
 // Reads the lines of an OBJ, VTU or VTK file as the vertices and rods of a mesh without radius, in the order of the
 // file. Throws InvalidInput like read_mesh(), and if the file has no lines.
 TetMesh read_line_mesh(const std::string& path);

@@ -4,6 +4,7 @@
 #include <climits>
 
 #include "base/error.h"
+#include "base/formatted.h"
 #include "io/number_text.h"
 #include "io/text_scanner.h"
 
@@ -22,7 +23,8 @@ const std::vector<std::string>& other_statements() {
 
 class ObjReader {
  public:
-  ObjReader(const std::string& file, std::string_view contents) : text_(file, contents, '#') {}
+  ObjReader(const std::string& file, std::string_view contents, bool reads_uv = false)
+      : text_(file, contents, '#'), reads_uv_(reads_uv) {}
 
   MeshContent read() {
     while (!text_.at_end()) {
@@ -31,6 +33,8 @@ class ObjReader {
         read_vertex();
       } else if (statement == "f" || statement == "fo") {
         read_face();
+      } else if (statement == "vt" && reads_uv_) {
+        read_texture_vertex();
       } else if (statement == "l") {
         read_line();
       } else {
@@ -42,7 +46,38 @@ class ObjReader {
     return std::move(content_);
   }
 
+  // Requires reads_uv and read().
+  std::vector<TriangleCorners> uv() {
+    std::vector<TriangleCorners> uv;
+    for (size_t t = 0; t < uv_corners_.size(); ++t) {
+      text_.blame(positions_[t]);
+      for (const int corner : uv_corners_[t])
+        if (corner < 0 || corner >= static_cast<int>(uv_.size()))
+          text_.fail(corner < 0 ? "a corner has no texture coordinates; unwrap the mesh and export it with UVs"
+                                : "a corner names texture coordinates " + std::to_string(corner + 1) + " of " +
+                                      std::to_string(uv_.size()) + "; correct it or get a complete copy");
+      const auto& [a, b, c] = uv_corners_[t];
+      uv.push_back({uv_[a], uv_[b], uv_[c]});
+      if (is_degenerate(uv.back()))
+        text_.fail("a triangle has no area in its texture coordinates " + uv_text(uv_[a]) + ", " + uv_text(uv_[b]) +
+                   ", " + uv_text(uv_[c]) + "; unwrap the mesh again");
+    }
+    return uv;
+  }
+
  private:
+  static std::string uv_text(const Vec3d& p) { return formatted("(%g, %g)", p[0], p[1]); }
+
+  void read_texture_vertex() {
+    Vec3d vertex{};
+    for (int r = 0; r < 2; ++r) {
+      text_.require_on_line("a texture coordinate");
+      vertex[r] = text_.number("a texture coordinate");
+    }
+    uv_.push_back(vertex);
+    leave_line();  // a third one may follow
+  }
+
   void read_vertex() {
     Vec3d vertex;
     for (double& coordinate : vertex.a) {
@@ -55,9 +90,17 @@ class ObjReader {
 
   void read_face() {
     corners_.clear();
-    while (!text_.at_line_end()) corners_.push_back(corner(text_.word("a corner")));
+    std::vector<int> uv;
+    while (!text_.at_line_end()) {
+      const std::string_view word = text_.word("a corner");
+      corners_.push_back(corner(word));
+      if (reads_uv_) uv.push_back(uv_corner(word));
+    }
     if (corners_.size() < 3) text_.fail("a face has fewer than three corners; write 'f a b c' or remove it");
     add_fan(corners_, content_.triangles);
+    if (!reads_uv_) return;
+    add_fan(uv, uv_corners_);
+    positions_.resize(uv_corners_.size(), text_.word_position());
   }
 
   void read_line() {
@@ -77,6 +120,15 @@ class ObjReader {
     const int64_t index = *given > 0 ? *given - 1 : vertices + *given;
     if (index > largest_) largest_ = index, largest_position_ = text_.word_position();
     return static_cast<int>(index);
+  }
+
+  // Returns the texture coordinates of a corner, -1 if it has none.
+  int uv_corner(std::string_view word) const {
+    const size_t first = word.find('/');
+    if (first == std::string_view::npos) return -1;
+    const auto given = parse_integer(word.substr(first + 1, word.find('/', first + 1) - first - 1));
+    if (!given || *given > INT_MAX) return -1;
+    return static_cast<int>(std::max<int64_t>(*given > 0 ? *given - 1 : static_cast<int64_t>(uv_.size()) + *given, -1));
   }
 
   // After a continued line, skip_line() ends the line on which the statement ends.
@@ -106,11 +158,21 @@ class ObjReader {
   std::vector<int> corners_;
   int64_t largest_ = -1;
   size_t largest_position_ = 0;
+  bool reads_uv_;
+  std::vector<Vec3d> uv_;             // texture coordinates
+  std::vector<Triangle> uv_corners_;  // of each triangle
+  std::vector<size_t> positions_;     // of each triangle in the text
 };
 
 }  // namespace
 
 MeshContent parse_obj(const std::string& file, std::string_view contents) { return ObjReader(file, contents).read(); }
+
+std::vector<TriangleCorners> parse_obj_uv(const std::string& file, std::string_view contents) {
+  ObjReader reader(file, contents, true);
+  reader.read();
+  return reader.uv();
+}
 
 std::string obj_text(const TriMesh& mesh) {
   std::string text = "# Aspic\n";

@@ -1,13 +1,18 @@
-// Wavefront OBJ: polygons as text. Reads positions, faces and lines; ignores texture, normals, groups and materials.
+// Wavefront OBJ: polygons as text. Reads positions, faces, lines and texture coordinates; ignores normals, groups
+// and materials.
 #pragma once
 #include <string>
 #include <string_view>
 
 #include "io/mesh_content.h"
+#include "mesh/triangle_shape.h"
 
 namespace aspic {
 
 MeshContent parse_obj(const std::string& file, std::string_view contents);
+// Returns the texture coordinates (u, v, 0) of the triangles of parse_obj(), in their order. Throws InvalidInput for
+// faces that lack them or have no area in them.
+std::vector<TriangleCorners> parse_obj_uv(const std::string& file, std::string_view contents);
 std::string obj_text(const TriMesh& mesh);
 
 }  // namespace aspic

@@ -68,5 +68,33 @@ TEST(Obj, ErrorsNameFileLineValueAndRemedy) {
 
 TEST(Obj, NumbersBelowSmallestDoubleAreZero) { EXPECT_EQ(parse("v 1e-999 +2 -1E-400").vertices[0][0], 0); }
 
+TEST(ObjUv, CornersHaveTheirOwnCoordinates) {
+  const std::vector<TriangleCorners> uv = parse_obj_uv("a.obj",
+                                                       "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt .5 0 0\nvt .5 "
+                                                       "1\nvt 0 1\nf 1/1 2/2/1 3/3 4/4\nvt 2 2\nvt 3 2\nvt 2 3\nf 1/-3 "
+                                                       "3/-2 4/7\n");
+  ASSERT_EQ(uv.size(), 3);
+  EXPECT_EQ(uv[1][0][0], 0);
+  EXPECT_EQ(uv[1][1][1], 1);
+  EXPECT_EQ(uv[1][2][0], 0);
+  EXPECT_EQ(uv[2][1][0], 3);
+}
+
+TEST(ObjUv, RejectsFacesWithoutArea) {
+  const auto refusal = [](const std::string& faces) {
+    try {
+      parse_obj_uv("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 2 0\n" + faces);
+    } catch (const InvalidInput& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(refusal("f 1 2 3\n"), HasSubstr("a.obj:7: a corner has no texture coordinates"));
+  EXPECT_THAT(refusal("f 1//1 2//1 3//1\n"), HasSubstr("no texture coordinates"));
+  EXPECT_THAT(refusal("f 1/1 2/2 3/4\n"), HasSubstr("names texture coordinates 4 of 3"));
+  EXPECT_THAT(refusal("f 1/1 2/2 3/3\n"), HasSubstr("no area in its texture coordinates (0, 0), (1, 0), (2, 0)"));
+  EXPECT_THAT(refusal("vt nan 0\nf 1/1 2/2 3/3\n"), HasSubstr("a.obj:7: "));
+}
+
 }  // namespace
 }  // namespace aspic

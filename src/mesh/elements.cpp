@@ -24,6 +24,19 @@ Mat3d rotation(const Vec3d& s, const Vec3d& t) {
   return identity3<double>() + K + (1 / (1 + cosine)) * (K * K);
 }
 
+// Returns the edges of the pattern of a triangle and a unit normal, in the plane of its corners: the first edge keeps
+// its direction.
+Mat3d rest_with_normal(const TetMesh& mesh, int triangle) {
+  const auto& [i, j, k] = mesh.sheet[triangle];
+  const Vec3d p = mesh.rest[j] - mesh.rest[i], q = mesh.rest[k] - mesh.rest[i];
+  if (mesh.pattern.empty()) return with_normal(p, q);
+  const auto& [A, B, C] = mesh.pattern[triangle];
+  const Vec3d n = cross(p, q), across = cross(n, p), a = B - A, c = C - A;
+  const double length = norm(a);
+  const Vec3d s = (1 / norm(p)) * p, m = (1 / norm(across)) * across;
+  return with_normal(length * s, (dot(a, c) / length) * s + (norm(cross(a, c)) / length) * m);
+}
+
 struct Offsets {
   int tets, vertices;
 };
@@ -39,7 +52,22 @@ void append_mids(const TetMesh& body, const Offsets& offsets, TetMesh& all) {
   all.mids.resize(all.tets.size(), kLinear);
 }
 
+// Triangles without a pattern get their corners. Precedes the triangles of the body.
+void append_pattern(const TetMesh& body, TetMesh& all) {
+  if (body.pattern.empty() && all.pattern.empty()) return;
+  std::vector<std::array<Vec3d, 3>> pattern;
+  for (const TetMesh* mesh : {static_cast<const TetMesh*>(&all), &body})
+    for (size_t t = 0; t < mesh->sheet.size(); ++t) pattern.push_back(rest_corners(*mesh, static_cast<int>(t)));
+  all.pattern = std::move(pattern);
+}
+
 }  // namespace
+
+std::array<Vec3d, 3> rest_corners(const TetMesh& mesh, int triangle) {
+  if (!mesh.pattern.empty()) return mesh.pattern[triangle];
+  const auto& [a, b, c] = mesh.sheet[triangle];
+  return {mesh.rest[a], mesh.rest[b], mesh.rest[c]};
+}
 
 double element_volume(const TetMesh& mesh, int element) {
   if (mesh.is_tet(element)) return volume(mesh, element);
@@ -48,9 +76,9 @@ double element_volume(const TetMesh& mesh, int element) {
     const double r = mesh.radius[element - mesh.first_segment()];
     return std::numbers::pi * r * r * norm(mesh.rest[q] - mesh.rest[p]);
   }
-  const auto& [a, b, c] = mesh.triangle(element);
-  const auto& X = mesh.rest;
-  return mesh.thickness[element - mesh.tet_count()] * norm(cross(X[b] - X[a], X[c] - X[a])) / 2;
+  const int triangle = element - mesh.tet_count();
+  const auto [A, B, C] = rest_corners(mesh, triangle);
+  return mesh.thickness[triangle] * norm(cross(B - A, C - A)) / 2;
 }
 
 Vec3d element_center(const TetMesh& mesh, int element) {
@@ -86,7 +114,7 @@ Mat3d deformation_gradient(const TetMesh& mesh, int element, std::span<const dou
     return rotation(s, (1 / l) * now) * (identity3<double>() + (l / l0 - 1) * outer(s, s));
   }
   const auto& [i, j, k] = mesh.triangle(element);
-  return with_normal(at(j) - at(i), at(k) - at(i)) * inverse(with_normal(X[j] - X[i], X[k] - X[i]));
+  return with_normal(at(j) - at(i), at(k) - at(i)) * inverse(rest_with_normal(mesh, element - mesh.tet_count()));
 }
 
 std::string size_text(const TetMesh& mesh) {
@@ -103,6 +131,7 @@ void append(const TetMesh& body, TetMesh& all) {
   all.rest.insert(all.rest.end(), body.rest.begin(), body.rest.end());
   for (const Tet& t : body.tets) all.tets.push_back({t[0] + offset, t[1] + offset, t[2] + offset, t[3] + offset});
   append_mids(body, {first_tet, offset}, all);
+  append_pattern(body, all);
   for (const Triangle& t : body.sheet) all.sheet.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
   all.thickness.insert(all.thickness.end(), body.thickness.begin(), body.thickness.end());
   for (const Segment& s : body.rods) all.rods.push_back({s[0] + offset, s[1] + offset});

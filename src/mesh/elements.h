@@ -7,6 +7,9 @@
 
 namespace aspic {
 
+// Returns the rest shape of a triangle: its pattern, or its corners.
+std::array<Vec3d, 3> rest_corners(const TetMesh& mesh, int triangle);
+
 double element_volume(const TetMesh& mesh, int element);  // at rest; of a sheet: area times thickness [m^3]
 Vec3d element_center(const TetMesh& mesh, int element);   // centroid at rest [m]
 
@@ -19,7 +22,7 @@ Mat3d deformation_gradient(const TetMesh& mesh, int element, std::span<const dou
 
 std::string size_text(const TetMesh& mesh);  // "12 vertices, 5 tets"
 
-// Appends the vertices, tets, sheets and rods of a body. Bodies without labels get the region 0.
+// Appends the vertices, tets, sheets with their patterns and rods of a body. Bodies without labels get the region 0.
 void append(const TetMesh& body, TetMesh& all);
 
 }  // namespace aspic

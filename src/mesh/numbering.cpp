@@ -45,6 +45,7 @@ TetMesh rearranged(const TetMesh& mesh, const VertexSource& vertex_source, const
     result.sheet.push_back(triangle);
   }
   result.thickness = mesh.thickness;
+  result.pattern = mesh.pattern;
   for (Segment segment : mesh.rods) {
     for (int& end : segment) end = vertex_name(end);
     result.rods.push_back(segment);

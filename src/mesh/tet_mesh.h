@@ -21,8 +21,11 @@ struct TetMesh {
   std::vector<MidNodes> mids = {};
   std::vector<Triangle> sheet = {};    // triangles of sheets, which have no tets
   std::vector<double> thickness = {};  // of each triangle of `sheet` [m]
-  std::vector<Segment> rods = {};      // segments of rods, which have neither tets nor triangles
-  std::vector<double> radius = {};     // of each segment of `rods` [m]
+  // Rest shapes of the triangles of `sheet` in a plane z = 0 [m]; empty: those of `rest`. They may differ at common
+  // edges, as at darts.
+  std::vector<std::array<Vec3d, 3>> pattern = {};
+  std::vector<Segment> rods = {};   // segments of rods, which have neither tets nor triangles
+  std::vector<double> radius = {};  // of each segment of `rods` [m]
 
   int vertex_count() const { return static_cast<int>(rest.size()); }
   int tet_count() const { return static_cast<int>(tets.size()); }

@@ -106,6 +106,7 @@ LinearParts linear_parts(const TetMesh& mesh) {
   parts.mesh.rest = mesh.rest;
   parts.mesh.sheet = mesh.sheet;
   parts.mesh.thickness = mesh.thickness;
+  parts.mesh.pattern = mesh.pattern;
   parts.mesh.rods = mesh.rods;
   parts.mesh.radius = mesh.radius;
   const auto add = [&](int t, const Tet& part) {

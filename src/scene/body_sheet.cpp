@@ -11,8 +11,10 @@
 #include "energy/sheet_elasticity.h"
 #include "energy/wind.h"
 #include "io/mesh_file.h"
+#include "math/svd3.h"
 #include "mesh/box.h"
 #include "mesh/close_corners.h"
+#include "mesh/elements.h"
 #include "mesh/sheet_shapes.h"
 #include "mesh/surface.h"
 #include "mesh/topology.h"
@@ -57,25 +59,73 @@ void check(const TriMesh& mesh, const Value& body, const Place& place) {
                               " vertices belong to no triangle; remove them (aspic check MESH --repair -o MENDED)");
 }
 
+StretchLimit limit_of(const Value& shell, double young) {
+  const Value* limit = shell.find("limit");
+  if (!limit) return {};
+  const Value& to = limit->is_number() ? *limit : (*limit)["to"];
+  const Value* from = limit->is_number() ? nullptr : limit->find("from");
+  if (!(to.number() > 1))
+    throw error_at(to.place, "limit = " + number_text(to.number()) +
+                                 "; the largest stretch must be above 1 (try 1.1 for at most 10 %)");
+  if (from && !(from->number() >= 1 && from->number() < to.number()))
+    throw error_at(from->place, "from = " + number_text(from->number()) + "; must be at least 1 and below to = " +
+                                    number_text(to.number()) + " (remove it for the mean of 1 and to)");
+  return {from ? from->number() : 0.5 * (1 + to.number()), to.number(), young};
+}
+
+// Throws InvalidInput if a triangle is stretched beyond the limit at the start.
+void check_limit(const PlacedBody& body, const StretchLimit& limit, const Model& model) {
+  std::vector<double> x(3 * model.mesh.rest.size());
+  for (size_t v = 0; v < body.start.size(); ++v)
+    for (int r = 0; r < 3; ++r)
+      x[3 * static_cast<size_t>(body.model_vertex(static_cast<int>(v))) + r] = body.start[v][r];
+  for (size_t t = 0; t < body.mesh.sheet.size(); ++t) {
+    const int element = model.mesh.tet_count() + body.first_triangle + static_cast<int>(t);
+    const Mat3d F = deformation_gradient(model.mesh, element, x);
+    if (const double s = svd3(F).s[0]; !(s < limit.to))
+      throw error_at(body.scene["shell"]["limit"].place,
+                     "limit: triangle " + std::to_string(t) + " of body '" + body.name() + "' is stretched by " +
+                         three_digits(s) + " at the start; the limit is " + number_text(limit.to) +
+                         " (choose a higher limit, a larger pattern, or a smaller deformation)");
+  }
+}
+
 MembraneLaw law_of(const PlacedBody& body, const TetMesh& mesh, size_t t, const MaterialParameters& parameters) {
   const Value& shell = body.scene["shell"];
   const double E = young_modulus(parameters.lame), nu = poisson_ratio(parameters.lame);
   const double thickness = shell["thickness"].number();
   const Value* weave = shell.find("weave");
-  if (!weave) return IsotropicSheet{E, nu, thickness};
+  if (!weave) return IsotropicSheet{E, nu, thickness, limit_of(shell, E)};
   const double weft = (*weave)["weft"].number();
   if (!(nu * nu * weft < E))
     throw error_at((*weave)["weft"].place,
                    "weft = " + number_text(weft) + "; must be below young / poisson^2 = " + number_text(E / (nu * nu)));
-  const Triangle& corners = mesh.sheet[body.first_triangle + t];
-  const std::array<Vec3d, 3> X = {mesh.rest[corners[0]], mesh.rest[corners[1]], mesh.rest[corners[2]]};
+  const std::array<Vec3d, 3> X = rest_corners(mesh, body.first_triangle + static_cast<int>(t));
   const Value& along = (*weave)["warp"];
   if (const Vec3d n = cross(X[1] - X[0], X[2] - X[0]), d = along.vector();
       !(norm(cross(n, d)) > kAcross * norm(n) * norm(d)))
     throw error_at(along.place, "warp is normal to triangle " + std::to_string(t) + " of body '" + body.name() +
                                     "'; give a direction along the sheet");
   const PlaneVector warp = direction_in_plane(X, along.vector());
-  return OrthotropicSheet{E, weft, nu, (*weave)["shear"].number(), thickness, warp};
+  return OrthotropicSheet{E, weft, nu, (*weave)["shear"].number(), thickness, warp, limit_of(shell, E)};
+}
+
+double area_of(const TriangleCorners& X) { return 0.5 * norm(cross(X[1] - X[0], X[2] - X[0])); }
+
+// Gives the sheet the rest shapes of texture coordinates, and notes how their areas differ from those of the mesh.
+void add_pattern(const Value& body, std::vector<TriangleCorners> uv, TetMesh& mesh, std::vector<std::string>& notes) {
+  const double scale = body["shell"]["pattern"]["uv_scale"].number();
+  double of_mesh = 0, of_pattern = 0, least = INFINITY, largest = 0;
+  for (size_t t = 0; t < uv.size(); ++t) {
+    for (Vec3d& corner : uv[t]) corner = scale * corner;
+    const double flat = area_of(uv[t]), given = area_of(rest_corners(mesh, static_cast<int>(t)));
+    of_mesh += given, of_pattern += flat;
+    least = std::min(least, flat / given), largest = std::max(largest, flat / given);
+  }
+  mesh.pattern = std::move(uv);
+  notes.push_back("body '" + body["name"].text() + "': the pattern has " + three_digits(of_pattern / of_mesh) +
+                  " of the area of the mesh, its triangles " + three_digits(least) + " to " + three_digits(largest) +
+                  " (uv_scale = " + three_digits(scale * std::sqrt(of_mesh / of_pattern)) + " keeps the area)");
 }
 
 double moment_of(const Value& shell, const MaterialParameters& parameters) {
@@ -96,6 +146,22 @@ void require_mid_edges(const PlacedBody& body, const std::vector<Triangle>& tria
                                                  std::to_string(last - first) +
                                                  " triangles, and two are possible (choose \"hinge\")");
   });
+}
+
+// Adds the bending of hinges that yield, and leaves it out of the sheet.
+void add_creases(const PlacedBody& body, Model& model, SheetMaterial& sheet) {
+  const Value& shell = body.scene["shell"];
+  const Value& yield = shell["yield"];
+  if (shell["bending"].text() == "mid_edge")
+    throw error_at(yield.place, "yield needs bending = \"hinge\" (remove one of the two)");
+  if (*std::max_element(sheet.moment.begin(), sheet.moment.end()) == 0)
+    throw error_at(yield.place, "yield = " + number_text(yield.number()) +
+                                    ", but the bending stiffness is 0 (remove it, or set a positive moment)");
+  sheet.bends = false;
+  const auto number = std::count_if(model.damping.begin(), model.damping.end(),
+                                    [](const auto& term) { return term->name().starts_with("creases"); });
+  model.damping.push_back(make_creases(number ? "creases_" + std::to_string(number + 1) : "creases",
+                                       {model.mesh, body.first_triangle, sheet.moment, sheet.rest, yield.number()}));
 }
 
 // Adds the plates of mid-edge bending to the sheet, and its angles to the model. `moment` replaces the stiffness along
@@ -123,7 +189,15 @@ BodyMesh make_sheet_mesh(Value& body, MeshLoader& loader) {
   refuse_keys_of_solids(body, {"shell", "a shell is neo_hookean, or has shell.weave", {}, {"viscosity"}});
   const Value* shape = body.find("shape");
   const Place place = (shape ? *shape : body["mesh"]).place;
-  TriMesh surface = shape ? shape_surface(*shape, loader) : thin_mesh_from_file(body, loader, read_tri_mesh);
+  const Value* pattern = body["shell"].find("pattern");
+  if (shape && pattern)
+    throw error_at(pattern->place, "pattern: a shape has no texture coordinates (give an OBJ file as `mesh`)");
+  std::vector<TriangleCorners> uv;
+  const auto read = [&](const std::string& path) {
+    if (pattern) uv = read_uv(path);
+    return read_tri_mesh(path);
+  };
+  TriMesh surface = shape ? shape_surface(*shape, loader) : thin_mesh_from_file(body, loader, read);
   check(surface, body, place);
   if (const std::string why = loader.why_not(surface.triangle_count()); !why.empty())
     throw error_at(body.place, why + " (choose a coarser mesh)");
@@ -141,6 +215,7 @@ BodyMesh make_sheet_mesh(Value& body, MeshLoader& loader) {
   mesh.sheet = surface.triangles;
   const double thickness = body["shell"]["thickness"].number();
   mesh.thickness.assign(mesh.sheet.size(), thickness);
+  if (pattern) add_pattern(body, std::move(uv), mesh, loader.notes);
   if (const double extent = longest_side(bounding_box(mesh.rest)); thickness > kThick * extent)
     loader.notes.push_back("body '" + body["name"].text() + "': its thickness of " + number_text(thickness) +
                            " m is much for a sheet of " + three_digits(extent) +
@@ -167,8 +242,10 @@ std::unique_ptr<TetElasticity> sheet_elasticity(const PlacedBody& body, const Bo
     sheet.laws.push_back(law_of(body, model.mesh, t, parameters[t]));
     sheet.moment.push_back(moment_of(shell, parameters[t]));
   }
+  if (shell.find("yield")) add_creases(body, model, sheet);
   if (shell["bending"].text() == "mid_edge") add_mid_edges(body, material, model, sheet);
   sheet.held = held;
+  if (shell.find("limit")) check_limit(body, limit_of(shell, 0), model);
   return make_sheet_elasticity(model.mesh, body.first_triangle, sheet);
 }
 

@@ -41,6 +41,7 @@ std::string fingerprint_of(const TetMesh& mesh) {
   hash.add(mesh.tets.data(), mesh.tets.size() * sizeof(Tet));
   hash.add(mesh.region.data(), mesh.region.size() * sizeof(int));
   hash.add(mesh.sheet.data(), mesh.sheet.size() * sizeof(Triangle));
+  hash.add(mesh.pattern.data(), mesh.pattern.size() * sizeof(std::array<Vec3d, 3>));
   hash.add(mesh.rods.data(), mesh.rods.size() * sizeof(Segment));
   return hash.text();
 }

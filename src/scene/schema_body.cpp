@@ -57,7 +57,30 @@ void add_body(Schema& s) {
            Choices{{"hinge", "mid_edge"}}, Usual{"\"hinge\"", "for cloth"}),
        key("rest", kText, "angles between triangles at rest", Choices{{"mesh", "flat"}},
            Usual{"\"mesh\"", "those of the mesh"}),
+       key("yield", kNumber,
+           "moment per length beyond which a fold stays, as a crease of paper or a bend of sheet metal; default: none. "
+           "Works with `hinge`, backward_euler and quasi_static; damping.stiffness then damps stretching alone",
+           Units{"N"}, kPositive),
+       key("limit", kNumber | kTable,
+           "limit of the principal stretches: `to`, or from where it acts and where it ends; default: none",
+           Members{"limit"}),
+       key("pattern", kTable, "flat rest shapes of the triangles; default: those of the mesh", Members{"pattern"}),
        key("weave", kTable, "orthotropic fabric", Members{"weave"})});
+  add_section(s,
+              {"limit", "limit = TO or { ... } in a shell",
+               "Adds -E (s - from)^2 ln((to - s) / (to - from)) to the energy density for each principal stretch s > "
+               "from, E the Young's modulus. It is infinite from `to` on, so no triangle is stretched that far."},
+              {key("to", kNumber, "stretch that is not reached, > 1", kRequired),
+               key("from", kNumber, "stretch from which the limit acts, in [1, to); default: (1 + to) / 2")});
+  add_section(s,
+              {"pattern", "pattern = { ... } in a shell",
+               "The pieces of a sewing pattern: triangles have the rest shapes of their texture coordinates in the OBJ "
+               "file `mesh`, so darts and gathered seams pull the sheet into shape. Mass and stretching use them; "
+               "bending keeps the lengths of the mesh, and its angles unless rest = \"flat\". Pieces may be mirrored. "
+               "`weave.warp` is a direction in the pattern: [1, 0, 0] along u, [0, 1, 0] along v."},
+              {key("uv_scale", kNumber,
+                   "length of the unit of u and v after `scale` of the body; a note gives the one that keeps the area",
+                   Units{"m"}, kPositive, kRequired)});
   add_section(s,
               {"weave", "weave = { ... } in a shell",
                "Orthotropic Saint Venant-Kirchhoff material: `young` of the material along the warp, `poisson` for "

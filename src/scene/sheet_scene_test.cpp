@@ -8,7 +8,10 @@
 
 #include "base/parallel.h"
 #include "contact/barrier.h"
+#include "dynamics/step_derivatives.h"
 #include "io/atomic_file.h"
+#include "math/svd3.h"
+#include "mesh/elements.h"
 #include "mesh/self_intersection.h"
 #include "mesh/surface.h"
 #include "results/run_directory.h"
@@ -225,6 +228,112 @@ TEST(SheetScene, SheetAloneBecomesAScene) {
   EXPECT_EQ(turned.simulation.model().pins.size(), 1u);  // upright under this gravity
   const Scene hangs = load_scene(folder.write("upright.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n"));
   EXPECT_EQ(hangs.simulation.model().pins.size(), 1u);
+}
+
+const std::string kFoil = kSheet + "shell = { thickness = 1e-3, moment = 1e-3, yield = 2e-3 }\n" +
+                          "[[body.pin]]\nname = \"edge\"\nwhere = \"x < -0.1\"\n";
+
+TEST(SheetScene, CreasesLoseEnergyAndRestoreWithTheSameBits) {
+  Scene scene = load(kFoil, {"gravity=[0,0,-9.81]"});
+  double loss = 0;
+  const auto step = [&] {
+    const StepReport report = scene.simulation.step();
+    ASSERT_TRUE(is_success(report.status));
+    EXPECT_GE(report.damping_loss, -1e-18);
+    EXPECT_LT(std::abs(report.ledger_error), 1e-15);
+    loss += report.damping_loss;
+  };
+  for (int i = 0; i < 5; ++i) step();
+  EXPECT_GT(loss, 1e-5);
+  const Simulation::Snapshot snapshot = scene.simulation.snapshot();
+  for (int i = 0; i < 3; ++i) step();
+  const std::uint64_t hash = scene.simulation.state_hash();
+  scene.simulation.restore(snapshot);
+  for (int i = 0; i < 3; ++i) step();
+  EXPECT_EQ(scene.simulation.state_hash(), hash);
+  for (const TermDerivatives& of : check_step_derivatives(scene.simulation, 1e-6))
+    EXPECT_TRUE(of.report.passed()) << of.term << " " << of.state;
+}
+
+// A unit square of two triangles with texture coordinates of a square whose side is .9, one of them mirrored.
+std::filesystem::path square_with_pattern(const TestFolder& folder, const std::string& shell) {
+  folder.write("square.obj",
+               "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt .45 0\nvt .45 .45\nvt -.45 .45\nvt 0 .45\n"
+               "f 1/1 2/2 3/3\nf 1/1 3/4 4/5\n");
+  return folder.write("scene.toml",
+                      "gravity = [0, 0, 0]\n[time]\nstep = 0.01\nduration = 0.01\n[[body]]\nname = \"square\"\nmesh = "
+                      "\"square.obj\"\nmaterial = { young = 1e6, poisson = 0.3, density = 200 }\nshell = { thickness = "
+                      "1e-3, moment = 0, " +
+                          shell + " }\n");
+}
+
+TEST(SheetScene, PatternIsTheRestShape) {
+  const TestFolder folder;
+  const Scene scene = load_scene(square_with_pattern(folder, "pattern = { uv_scale = 2.0 }"));
+  const Model& model = scene.simulation.model();
+  EXPECT_NEAR(model.mass->total(), 200 * 1e-3 * 0.81, 1e-12);
+  const double s = 1 / 0.9, mu = 1e6 / 2.6, la = 0.3e6 / 0.91;
+  const double psi = mu / 2 * (2 * s * s - 2 - 4 * std::log(s)) + 2 * la * std::log(s) * std::log(s);
+  EXPECT_NEAR(model.elasticity[0]->value(scene.simulation.state().q), 0.81 * 1e-3 * psi, 1e-11);
+  for (int t = 0; t < 2; ++t) {
+    const Mat3d F = deformation_gradient(model.mesh, t, scene.simulation.state().q);
+    EXPECT_LT(squared_norm(transpose(F) * F - Mat3d{{s * s, 0, 0, 0, s * s, 0, 0, 0, 1}}), 1e-24);
+    EXPECT_GT(F(0, 0), 0.9);  // without a rotation
+  }
+  EXPECT_THAT(scene.notes, testing::Contains(HasSubstr("the pattern has 0.81 of the area of the mesh")));
+}
+
+TEST(SheetScene, RefusesPatternsWithoutTextureCoordinates) {
+  EXPECT_THAT(refusal(kSheet + "shell = { thickness = 1e-3, pattern = { uv_scale = 1.0 } }\n"),
+              HasSubstr("a shape has no texture coordinates"));
+  const TestFolder folder;
+  const std::filesystem::path scene = square_with_pattern(folder, "pattern = { uv_scale = 2.0 }");
+  EXPECT_THAT(refusal_of(scene, {.overrides = {"body.shell.pattern.uv_scale=0"}}), HasSubstr("must be > 0"));
+  folder.write("square.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  EXPECT_THAT(refusal_of(scene), HasSubstr("square.obj:4: a corner has no texture coordinates"));
+  const std::filesystem::path off = folder.write("square.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  EXPECT_THAT(refusal_of(scene, {.overrides = {"body.mesh=\"" + off.string() + "\""}}),
+              HasSubstr("Wavefront OBJ with UVs"));
+}
+
+// A soft cloth hangs from its upper edge.
+TEST(SheetScene, StretchesStayBelowTheirLimit) {
+  const auto largest = [&](const std::string& limit) {
+    Scene scene =
+        load(kSheet + "shell = { thickness = 1e-3" + limit + " }\n[[body.pin]]\nname = \"top\"\nwhere = \"y > 0.19\"\n",
+             {"body.material.young=5e3"});
+    double most = 0;
+    for (int i = 0; i < 20; ++i) {
+      EXPECT_TRUE(is_success(scene.simulation.step().status)) << i;
+      const Model& model = scene.simulation.model();
+      for (int t = 0; t < model.mesh.element_count(); ++t)
+        most = std::max(most, svd3(deformation_gradient(model.mesh, t, scene.simulation.state().q)).s[0]);
+    }
+    return most;
+  };
+  EXPECT_GT(largest(""), 1.3);
+  const double most = largest(", limit = 1.1");
+  EXPECT_LT(most, 1.1);
+  EXPECT_GT(most, 1.05);
+}
+
+TEST(SheetScene, RefusesLimitsOfStretches) {
+  const auto with = [](const std::string& limit, const std::string& more = "") {
+    return refusal(kSheet + "shell = { thickness = 1e-3, limit = " + limit + " }\n" + more);
+  };
+  EXPECT_EQ(with("1.1"), "");
+  EXPECT_EQ(with("{ from = 1.0, to = 1.1 }"), "");
+  EXPECT_THAT(with("1.0"), HasSubstr("limit = 1; the largest stretch must be above 1"));
+  EXPECT_THAT(with("{ from = 1.2, to = 1.1 }"), HasSubstr("from = 1.2; must be at least 1 and below to = 1.1"));
+  EXPECT_THAT(with("{ from = 0.9, to = 1.1 }"), HasSubstr("from = 0.9; must be at least 1"));
+  EXPECT_THAT(with("{ from = 1.05 }"), HasSubstr("needs the key 'to'"));
+  EXPECT_THAT(with("1.1", "deform = { scale = [1.2, 1, 1] }\n"), HasSubstr("is stretched by 1.2 at the start"));
+}
+
+TEST(SheetScene, RefusesCreasesWithoutHinges) {
+  EXPECT_THAT(refusal(kFoil, {"body.shell.bending=\"mid_edge\""}), HasSubstr("yield needs bending = \"hinge\""));
+  EXPECT_THAT(refusal(kFoil, {"body.shell.moment=0"}), HasSubstr("the bending stiffness is 0"));
+  EXPECT_THAT(refusal(kFoil, {"time.integrator=bdf2"}), HasSubstr("does not advance the internal variables"));
 }
 
 }  // namespace

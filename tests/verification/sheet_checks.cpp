@@ -131,6 +131,115 @@ void check_momentum(const Subject&, Findings& found) {
   found.expect_small("velocity across", mean_velocity(simulation, 1), 1e-9, "the residual of the steps", "m/s");
 }
 
+// A strip is folded by a hand at x > 0.05 about the edges at x = 0, then released.
+void check_crease(const Subject& subject, Findings& found) {
+  constexpr double kCell = 0.1, kWidth = 0.3, kStiffness = 1e-3, kYield = 5e-3, kAngle = 2;
+  std::string strip;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) strip += formatted("v %g %g 0\n", kCell * (i - 1), kCell * j);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 1; j < 4; ++j) {
+      const int a = 4 * i + j;
+      strip += formatted("f %d %d %d\nf %d %d %d\n", a, a + 4, a + 5, a, a + 5, a + 1);
+    }
+  const TemporaryFolder folder;
+  write_file(folder.path() / "strip.obj", strip);
+  const std::string scene =
+      "gravity = [0, 0, 0]\n[time]\nstep = 0.05\nduration = 1\nintegrator = \"quasi_static\"\n[solver]\ntolerance = "
+      "1e-9\n[[body]]\nmesh = \"strip.obj\"\nshell = { thickness = 1e-3, moment = " +
+      sheet_text(kStiffness * subject.stiffness) + ", yield = " + sheet_text(kYield) +
+      " }\nmaterial = { young = 1e5, poisson = 0, density = 100 }\n[[body.pin]]\nwhere = \"X < 0.05\"\n";
+  const std::string hand =
+      "[[body.pin]]\nwhere = \"abs(X - 0.1) < 0.01\"\nmotion = { displacement = [\"X * (cos(2 * t) - 1)\", 0, \"X * "
+      "sin(2 * t)\"] }\n";
+  write_file(folder.path() / "fold.toml", scene + hand);
+  write_file(folder.path() / "release.toml", scene);
+  Simulation folds = load_scene((folder.path() / "fold.toml").string()).simulation;
+  double loss = 0, moment = 0;
+  for (int i = 0; i < 20; ++i) {
+    const StepReport report = folds.step();
+    loss += report.damping_loss;
+    moment = std::abs(report.resultants.pins[1].moment[1]);
+  }
+  Simulation released = load_scene((folder.path() / "release.toml").string()).simulation;
+  released.restore(folds.snapshot());
+  loss += released.step().damping_loss;
+  const TetMesh& mesh = released.model().mesh;
+  double angle = 0;
+  for (int v = 0; v < mesh.vertex_count(); ++v)
+    if (const Vec3d x = point(released.state().q, v); mesh.rest[v][0] > 0.15) angle += std::atan2(x[2], x[0]) / 4;
+  const double remaining = kAngle - kYield * kCell / kStiffness;
+  found.expect("moment while it flows", {moment, kYield * kWidth, 1e-6 * kYield * kWidth}, "the tolerance", "N m");
+  found.expect("angle after release", {angle, remaining, 1e-6}, "the tolerance", "rad");
+  found.expect("loss", {loss, kYield * kWidth * remaining, 1e-6 * kYield * kWidth}, "the tolerance", "J");
+}
+
+// The sector of an annulus is sewn to a cone, from a cone that is too low.
+void check_cone(const Subject& subject, Findings& found) {
+  constexpr int kRings = 8, kColumns = 48;
+  constexpr double kInner = 0.2, kOuter = 1, kShare = 2.0 / 3, kLow = 0.9;  // kShare: sector per full turn
+  const double steep = std::sqrt(1 - kShare * kShare);
+  std::string obj;
+  for (int i = 0; i <= kRings; ++i) {
+    const double r = kInner + (kOuter - kInner) * i / kRings;
+    for (int j = 0; j <= kColumns; ++j) {
+      const double turn = 2 * std::numbers::pi * j / kColumns, flat = kShare * turn;
+      if (j < kColumns)
+        obj += formatted("v %.17g %.17g %.17g\n", r * kShare * std::cos(turn), r * kShare * std::sin(turn),
+                         -kLow * steep * r);
+      obj += formatted("vt %.17g %.17g\n", (1 + r * std::cos(flat)) / 2, (1 + r * std::sin(flat)) / 2);
+    }
+  }
+  const auto corner = [&](int i, int j) {
+    obj += formatted(" %d/%d", i * kColumns + j % kColumns + 1, i * (kColumns + 1) + j + 1);
+  };
+  for (int i = 0; i < kRings; ++i)
+    for (int j = 0; j < kColumns; ++j) {
+      obj += "f";
+      corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1);
+      obj += "\n";
+    }
+  const TemporaryFolder folder;
+  write_file(folder.path() / "cone.obj", obj);
+  write_file(
+      folder.path() / "scene.toml",
+      "gravity = [0, 0, 0]\n[time]\nstep = 0.1\nduration = 0.5\nintegrator = \"quasi_static\"\n[[body]]\nmesh = "
+      "\"cone.obj\"\nshell = { thickness = 1e-3, moment = 1e-7, rest = \"flat\", pattern = { uv_scale = " +
+          sheet_text(2 / subject.stiffness) +
+          " } }\nmaterial = { young = 1e6, poisson = 0.3, density = 200 }\n[[body.pin]]\nwhere = \"Z > -0.16\"\naxes "
+          "= \"z\"\n[[body.pin]]\nwhere = \"max(-Z - 0.16, abs(Y) - 1e-3) < 0\"\naxes = \"y\"\n[[body.pin]]\nwhere = "
+          "\"max(-Z - 0.16, abs(X) - 1e-3) < 0\"\naxes = \"x\"\n");
+  Scene scene = load_scene((folder.path() / "scene.toml").string());
+  for (int i = 0; i < scene.steps; ++i) scene.simulation.step();
+  const Simulation& simulation = scene.simulation;
+  double lower = 0, upper = -10;
+  for (int v = 0; v < simulation.model().mesh.vertex_count(); ++v) {
+    const double z = point(simulation.state().q, v)[2];
+    lower = std::min(lower, z), upper = std::max(upper, z);
+  }
+  found.expect("height over slant length", {(upper - lower) / (kOuter - kInner), steep, 2e-3},
+               "the facets of the cone");
+}
+
+// A square whose pattern is smaller.
+void check_tight(const Subject& subject, Findings& found) {
+  constexpr double kSide = 0.9, t = 1e-3, nu = 0.3;
+  const double s = 1 / kSide, mu = 1e6 / (2 * (1 + nu)), la = 1e6 * nu / (1 - nu * nu);
+  const TemporaryFolder folder;
+  write_file(folder.path() / "square.obj",
+             "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n");
+  write_file(
+      folder.path() / "scene.toml",
+      "gravity = [0, 0, 0]\n[time]\nstep = 0.1\nduration = 0.1\n[[body]]\nmesh = \"square.obj\"\nshell = { thickness "
+      "= 1e-3, pattern = { uv_scale = 0.9 } }\nmaterial = { young = " +
+          sheet_text(1e6 * subject.stiffness) + ", poisson = 0.3, density = 200 }\n");
+  const Scene scene = load_scene((folder.path() / "scene.toml").string());
+  const double V = scene.simulation.model().elasticity[0]->value(scene.simulation.state().q);
+  const double expected =
+      kSide * kSide * t * (mu / 2 * (2 * s * s - 2 - 4 * std::log(s)) + 2 * la * std::log(s) * std::log(s));
+  found.expect("energy of a sheet with a pattern 10 % smaller", {V, expected, 1e-10 * expected}, "round-off", "J");
+}
+
 }  // namespace
 
 void add_sheet_checks(std::vector<Check>& checks) {
@@ -174,6 +283,31 @@ void add_sheet_checks(std::vector<Check>& checks) {
                     check_momentum,
                     {},
                     {R"tex(\dot p = 0)tex"}});
+  checks.push_back(
+      {"sheets",
+       "crease",
+       "A strip is folded and released",
+       "A strip of hinges with a yield moment is folded by an angle about one row of edges, then released.",
+       "Perfect plasticity: the rest angle flows at the moment m per length",
+       check_crease,
+       {},
+       {R"tex(\theta_0 = \theta - \frac{m h}{D}, \quad \text{loss} = m\, b\, |\theta_0|)tex"}});
+  checks.push_back({"sheets",
+                    "cone",
+                    "A cone sewn from a flat sector",
+                    "A sheet whose pattern is a sector of 240 degrees takes the shape of a cone.",
+                    "The cone onto which the sector rolls up without stretching",
+                    check_cone,
+                    {},
+                    {R"tex(\sin\alpha = \frac{240}{360})tex"}});
+  checks.push_back({"sheets",
+                    "tight",
+                    "A sheet with a smaller pattern",
+                    "A square sheet is stretched by 1 / .9 because its pattern is .9 as long.",
+                    "Homogeneous deformation",
+                    check_tight,
+                    {},
+                    {R"tex(V = A t \left(\tfrac{\mu}{2} (2 s^2 - 2 - 4 \ln s) + 2 \lambda \ln^2 s\right))tex"}});
 }
 
 }  // namespace aspic::verify
