@@ -9,5 +9,6 @@ namespace aspic {
 
 MeshContent parse_obj(const std::string& file, std::string_view contents);
 std::string obj_text(const TriMesh& mesh);
+std::string obj_text_of_lines(const TetMesh& mesh);  // the rods of a mesh
 
 }  // namespace aspic
