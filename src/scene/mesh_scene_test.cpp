@@ -147,7 +147,7 @@ TEST(MeshAlone, SurfaceIsFilledOnce) {
 TEST(MeshAlone, LinesAreARod) {
   const TestFolder folder;
   Scene level = load_scene(folder.write("cable.obj", "v 0 0 0\nv 1 0 0\nv 2 0.1 0\nv 3 0 0\nl 4 3 2 1\n"));
-  EXPECT_THAT(level.notes, Contains(HasSubstr("rod.radius = 0.02 m")));
+  EXPECT_THAT(level.notes, Contains(HasSubstr("rod.radius = 0.01 m")));
   EXPECT_THAT(level.notes, Contains(HasSubstr("swings from its end, vertex 3")));
   EXPECT_EQ(level.simulation.model().mesh.rods.size(), 3u);
   for (int step = 0; step < 20; ++step) EXPECT_TRUE(is_success(level.simulation.step().status));
