@@ -85,8 +85,11 @@ Motion motion_of(const ShownSide& shown, const Format& format) {
 std::string usd_text(const std::string& name, const Surface& surface, const Motion& motion, UpAxis up) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "motion.usda";
-  write_usd(path, {{name, surface.triangles, [&](int k) { return motion.frames[k]; }}}, motion.times, motion.per_second,
-            up);
+  const UsdMesh mesh{.name = name,
+                     .triangles = surface.triangles,
+                     .points = [&](int k) { return motion.frames[k]; },
+                     .is_two_sided = true};
+  write_usd(path, {mesh}, motion.times, motion.per_second, up);
   return read_file(path);
 }
 

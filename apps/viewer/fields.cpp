@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "dynamics/internal_terms.h"
 #include "energy/energy.h"
 #include "math/eigen3.h"
 #include "mesh/elements.h"
@@ -70,6 +71,8 @@ std::vector<Field> fields_of(const Model& model, bool has_mesh_error) {
   std::vector<Field> fields;
   for (const KnownField& known : known_fields()) fields.push_back(known.field);
   if (model.contact) fields.push_back({kContactPressure, "contact pressure", "Pa"});
+  if (model.mesh.element_count() > model.mesh.tet_count())
+    fields.push_back({std::string(kBendingDensity), "bending energy density", "J/m^3"});
   if (has_mesh_error) fields.push_back({std::string(kMeshError), "mesh error", "J/m^3"});
   for (const auto& [name, unused] : model.tet_fields) {
     Field& field = fields.emplace_back(Field{name, name, ""});
@@ -118,6 +121,11 @@ double largest_stretch(const Mat3d& F) {
 std::span<const double> FieldValues::tet_values(const std::string& field, const View& view) {
   const Model& model = view.simulation.model();
   if (field == kMeshError && !view.mesh_error.empty()) return view.mesh_error;
+  if (field == kBendingDensity) {
+    if (!view.bending.empty()) return view.bending;
+    tet_ = bending_density(model, view.x, view.simulation.state().internal);
+    if (!tet_.empty()) return tet_;
+  }
   if (const auto* values = tet_field(model, field)) return *values;
   const KnownField* known = find_field(field);
   if (!known || known->elastic) {  // a field that no longer exists shows det F

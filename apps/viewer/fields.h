@@ -18,6 +18,7 @@ struct Field {
 };
 // The density of the estimated error of the mesh. A model alone does not determine it.
 inline constexpr std::string_view kMeshError = "mesh_error";
+inline constexpr std::string_view kBendingDensity = "bending_density";  // of models with sheets or rods
 std::vector<Field> fields_of(const Model& model, bool has_mesh_error = false);
 const std::vector<double>* tet_field(const Model& model, std::string_view name);  // null: none
 
@@ -26,6 +27,8 @@ struct View {
   const Simulation& simulation;
   std::span<const double> x;
   std::span<const double> mesh_error = {};  // of each tet [J/m^3]; empty: not estimated
+  // Of each element [J/m^3]; empty: that at x with the internal variables of the state. Needs all rows of x.
+  std::span<const double> bending = {};
 };
 
 class FieldValues {

@@ -95,7 +95,8 @@ struct Frame {
 };
 
 const std::set<std::string> kDerived = {"displacement", "contact_pressure"};  // from positions and contact points
-const std::set<std::string> kMoving = {"von_mises", "energy_density", "det_F", "stretch", std::string(kMeshError)};
+const std::set<std::string> kMoving = {"von_mises", "energy_density",        "det_F",
+                                       "stretch",   std::string(kMeshError), std::string(kBendingDensity)};
 
 std::vector<float> flat(const std::vector<Vec3d>& points) {
   std::vector<float> numbers;
@@ -170,11 +171,12 @@ class Recorder {
     return step > 0 && tables_.steps[static_cast<size_t>(step) - 1].report.mesh_worst_tet >= 0;
   }
 
-  // Returns NaN where there is no mesh error.
-  std::vector<float> values(const std::string& field, std::span<const double> x, std::span<const double> mesh_error) {
+  // Returns NaN for a field of the frame that it does not have.
+  std::vector<float> values(const std::string& field, const View& view) {
     std::vector<float> result(body_.places.rest.size(), std::numeric_limits<float>::quiet_NaN());
-    if (field == kMeshError && mesh_error.empty()) return result;
-    evaluator_.evaluate(field, {scene_.simulation, x, mesh_error}, body_.places, result);
+    if ((field == kMeshError && view.mesh_error.empty()) || (field == kBendingDensity && view.bending.empty()))
+      return result;
+    evaluator_.evaluate(field, view, body_.places, result);
     return result;
   }
 
@@ -182,8 +184,11 @@ class Recorder {
     std::vector<Frame> frames;
     for (const int index : indices) {
       const std::vector<double> x = positions_->frame(index);
-      std::vector<double> mesh_error;
-      if (is_estimated(index)) mesh_error = positions_->mesh_error(index);
+      std::vector<double> mesh_error, bending;
+      if (is_estimated(index)) mesh_error = positions_->cell_field(index, kMeshError);
+      if (std::find(moving_.begin(), moving_.end(), kBendingDensity) != moving_.end())
+        bending = positions_->cell_field(index, kBendingDensity);
+      const View view{scene_.simulation, x, mesh_error, bending};
       Frame& frame = frames.emplace_back(Frame{.index = index});
       for (const int v : body_.source)
         for (size_t k = 0; k < 3; ++k) frame.x.push_back(static_cast<float>(x[3 * static_cast<size_t>(v) + k]));
@@ -191,9 +196,9 @@ class Recorder {
         const Vec3d position = point.position(x);
         for (int k = 0; k < 3; ++k) frame.x.push_back(static_cast<float>(position[k]));
       }
-      for (const std::string& field : moving_) frame.values.push_back(values(field, x, mesh_error));
+      for (const std::string& field : moving_) frame.values.push_back(values(field, view));
       if (fixed_values_.empty())
-        for (const std::string& field : fixed_) fixed_values_.push_back(values(field, x, mesh_error));
+        for (const std::string& field : fixed_) fixed_values_.push_back(values(field, view));
       if (positions_->are_of_model()) add_contacts(frame, x);
     }
     return frames;

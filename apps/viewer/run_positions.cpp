@@ -24,16 +24,13 @@ class BodyFrames : public RunPositions {
                          std::to_string(expected / 3) + " vertices");
     return model_.numbering.vertex.from_user(x, 3);
   }
-  std::vector<double> mesh_error(int index) override {
+  std::vector<double> cell_field(int index, std::string_view name) override {
     const fs::path file = layout_.root() / layout_.file_of_frame(index);
-    for (const aspic::Field& field : read_frame(file).cell_fields) {
-      if (field.name != "mesh_error") continue;
-      if (field.values.size() != model_.mesh.tets.size())
-        throw InvalidInput(file.string() + ": mesh_error has " + std::to_string(field.values.size()) +
-                           " values; the scene has " + std::to_string(model_.mesh.tets.size()) + " tets");
-      return model_.numbering.tet.from_user(field.values);
-    }
-    return {};
+    const std::vector<double> values = cells_of(file, name);
+    if (const int count = model_.mesh.element_count(); !values.empty() && std::ssize(values) != count)
+      throw InvalidInput(file.string() + ": " + std::string(name) + " has " + std::to_string(values.size()) +
+                         " values; the scene has " + std::to_string(count) + " elements");
+    return values.empty() ? values : model_.numbering.tet.from_user(values);
   }
   bool are_of_model() const override { return true; }
 
@@ -43,6 +40,13 @@ class BodyFrames : public RunPositions {
     std::vector<double> x;
     for (const Vec3d& point : read_pvtu(file).mesh.rest) x.insert(x.end(), point.a, point.a + 3);
     return x;
+  }
+
+  static std::vector<double> cells_of(const fs::path& file, std::string_view name) {
+    if (file.extension() != ".pvtu") return read_vtu_cell_field(file, name);
+    for (const Vtu whole = read_pvtu(file); const aspic::Field& field : whole.cell_fields)
+      if (field.name == name) return field.values;
+    return {};
   }
 
   RunLayout layout_;
@@ -74,7 +78,7 @@ class SkinCaches : public RunPositions {
     }
     return x;
   }
-  std::vector<double> mesh_error(int) override { return {}; }
+  std::vector<double> cell_field(int, std::string_view) override { return {}; }
   bool are_of_model() const override { return false; }
 
  private:

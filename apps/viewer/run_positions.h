@@ -1,6 +1,7 @@
 // The positions in each frame of a run, read from its directory frame by frame, and the estimated error of the mesh.
 #pragma once
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "results/run_directory_layout.h"
@@ -12,8 +13,8 @@ class RunPositions {
  public:
   virtual ~RunPositions() = default;
   virtual std::vector<double> frame(int index) = 0;  // 3 coordinates per point [m]; throws InvalidInput with the file
-  // The density of the estimated error of the mesh in each tet of the model [J/m^3]; empty: the frame has none.
-  virtual std::vector<double> mesh_error(int index) = 0;
+  // Values of each element of the model; empty: the frame has no such field.
+  virtual std::vector<double> cell_field(int index, std::string_view name) = 0;
   // true: vertices of the model in the order of its mesh. false: vertices of the skins, without the interior.
   virtual bool are_of_model() const = 0;
 };

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "dynamics/integrator_facts.h"
+#include "energy/bending_density.h"
 
 namespace aspic {
 
@@ -92,6 +93,22 @@ void InternalTerms::require_support(const IntegratorFacts& integrator) const {
   throw InvalidInput("integrator = '" + std::string(integrator.name) +
                      "' does not advance the internal variables of '" + terms_[0].name +
                      "'; choose backward_euler, or quasi_static without inertia");
+}
+
+void InternalTerms::add_bending_density(Positions x, std::span<const double> z, std::span<double> density) const {
+  for (const Term& term : terms_)
+    if (const auto* bending = dynamic_cast<const BendingElements*>(term.variables))
+      bending->add_bending_density(x, part(term, z), density);
+}
+
+std::vector<double> bending_density(const Model& model, Positions x, std::span<const double> z) {
+  if (model.mesh.element_count() == model.mesh.tet_count()) return {};
+  std::vector<double> density(model.mesh.element_count(), 0.0);
+  for (const auto& V : model.elasticity)
+    if (const auto* bending = dynamic_cast<const BendingElements*>(V.get()))
+      bending->add_bending_density(x, {}, density);
+  InternalTerms(model).add_bending_density(x, z, density);
+  return density;
 }
 
 }  // namespace aspic

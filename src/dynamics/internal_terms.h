@@ -30,6 +30,9 @@ class InternalTerms {
   InternalEnergies energies(std::span<const ActiveTerm> damping, const InternalStep& step) const;  // sums
   void append_stored(std::span<const double> z, std::vector<double>& energies) const;              // one per term [J]
 
+  // Adds the energy of bending of terms that are BendingElements to the density of each element [J/m^3].
+  void add_bending_density(Positions x, std::span<const double> z, std::span<double> density) const;
+
   // Reorder the internal variables of a state.
   std::vector<double> to_user(std::span<const double> z, const Renumbering& tet) const;
   std::vector<double> from_user(std::span<const double> z, const Renumbering& tet) const;
@@ -55,5 +58,9 @@ class InternalTerms {
   std::vector<Term> terms_;
   size_t size_ = 0;
 };
+
+// Returns the energy of bending and twist per volume at rest of each element [J/m^3], 0 for tets; empty if there are
+// neither sheets nor rods. `z`: State::internal at x.
+std::vector<double> bending_density(const Model& model, Positions x, std::span<const double> z);
 
 }  // namespace aspic

@@ -9,6 +9,7 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "energy/bending_density.h"
 #include "energy/element_groups.h"
 #include "energy/hinge_angle.h"
 #include "energy/internal_variables.h"
@@ -205,10 +206,15 @@ class SheetBending final : public HingeTerm<HingeBending> {
   std::vector<double> areas_;  // of the triangles at rest [m^2]
 };
 
-class Creases final : public HingeTerm<Energy>, public InternalVariables {
+class Creases final : public HingeTerm<Energy>, public InternalVariables, public BendingElements {
  public:
-  Creases(std::string name, std::vector<Hinge> hinges, std::vector<double> limits, const InternalRange& range)
-      : HingeTerm(std::move(hinges)), name_(std::move(name)), limits_(std::move(limits)), range_(range) {}
+  Creases(std::string name, std::vector<Hinge> hinges, std::vector<double> limits, std::vector<double> volumes,
+          const InternalRange& range)
+      : HingeTerm(std::move(hinges)),
+        name_(std::move(name)),
+        limits_(std::move(limits)),
+        volumes_(std::move(volumes)),
+        range_(range) {}
 
   std::string_view name() const override { return name_; }
   std::unique_ptr<Context> make_context() const override {
@@ -239,6 +245,12 @@ class Creases final : public HingeTerm<Energy>, public InternalVariables {
   }
   double stored_energy(std::span<const double> z) const override {
     return sum([&](int i) { return energy(i, z[hinges_[i].side]); });
+  }
+  void add_bending_density(Positions, std::span<const double> z, std::span<double> density) const override {
+    for (int i = 0; i < count(); ++i) {
+      const double share = 0.5 * energy(i, z[hinges_[i].side]);
+      for (const int t : hinges_[i].triangles) density[range_.first + t] += share / volumes_[t];
+    }
   }
   InternalEnergies internal_energies(const InternalStep& step, const Context& context) const override {
     const double work = sum([&](int i) {
@@ -292,7 +304,8 @@ class Creases final : public HingeTerm<Energy>, public InternalVariables {
   }
 
   std::string name_;
-  std::vector<double> limits_;  // largest elastic change of each angle
+  std::vector<double> limits_;   // largest elastic change of each angle
+  std::vector<double> volumes_;  // of the triangles at rest [m^3]
   InternalRange range_;
 };
 
@@ -320,12 +333,14 @@ std::unique_ptr<HingeBending> make_hinge_bending(std::span<const Vec3d> rest, st
 std::unique_ptr<Energy> make_creases(std::string name, const CreasedSheet& sheet) {
   const auto& X = sheet.mesh.rest;
   const std::span<const Triangle> triangles(&sheet.mesh.sheet[sheet.first], sheet.moment.size());
-  std::vector<Hinge> hinges = list_of_hinges(X, triangles, sheet.moment, sheet.rest).hinges();
-  std::vector<double> limits;
+  const HingeList list = list_of_hinges(X, triangles, sheet.moment, sheet.rest);
+  std::vector<Hinge> hinges = list.hinges();
+  std::vector<double> limits, volumes = list.areas();
+  for (size_t t = 0; t < volumes.size(); ++t) volumes[t] *= sheet.mesh.thickness[sheet.first + t];
   for (const Hinge& hinge : hinges)
     limits.push_back(sheet.yield * norm(X[hinge.vertices[1]] - X[hinge.vertices[0]]) / hinge.stiffness);
   const InternalRange range{sheet.mesh.tet_count() + sheet.first, static_cast<int>(triangles.size()), 3};
-  return std::make_unique<Creases>(std::move(name), std::move(hinges), std::move(limits), range);
+  return std::make_unique<Creases>(std::move(name), std::move(hinges), std::move(limits), std::move(volumes), range);
 }
 
 }  // namespace aspic

@@ -8,12 +8,14 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "energy/bending_density.h"
 #include "energy/element_groups.h"
 #include "energy/internal_variables.h"
 #include "energy/springs.h"
 #include "math/definite.h"
 #include "math/dual.h"
 #include "math/vectors.h"
+#include "mesh/elements.h"
 
 namespace aspic {
 namespace {
@@ -175,11 +177,13 @@ constexpr int kNodes = 5;       // three vertices and two rows of angles
 constexpr int kInternal = 8;    // per segment
 constexpr int kDirections = 8;  // of a joint: edge vectors of l and r, and their angles
 
-class RodBending : public Energy, public InternalVariables {
+class RodBending : public Energy, public InternalVariables, public BendingElements {
  public:
   RodBending(const TetMesh& mesh, std::span<const RodSegment> segments)
       : segments_(segments.begin(), segments.end()), first_element_(mesh.first_segment()) {
     ASPIC_CHECK(segments.size() == mesh.rods.size());
+    for (size_t s = 0; s < segments.size(); ++s)
+      volume_.push_back(element_volume(mesh, first_element_ + static_cast<int>(s)));
     make_rest_frames(mesh);
     make_joints(mesh);
     find_unused_entries();
@@ -245,12 +249,14 @@ class RodBending : public Energy, public InternalVariables {
 
   double stored_energy(std::span<const double> z) const override {
     double sum = 0;
-    for (const Joint& joint : joints_) {
-      const double *l = &z[kInternal * static_cast<size_t>(joint.segments[0])],
-                   *r = &z[kInternal * static_cast<size_t>(joint.segments[1])];
-      sum += energy_of(joint, {l[5], l[6]}, {r[3], r[4]}, l[7]);
-    }
+    for (const Joint& joint : joints_) sum += stored_energy(joint, z);
     return sum;
+  }
+
+  // A joint gives half of its energy to each of its segments.
+  void add_bending_density(Positions, std::span<const double> z, std::span<double> density) const override {
+    for (const Joint& joint : joints_)
+      for (const int s : joint.segments) density[first_element_ + s] += 0.5 * stored_energy(joint, z) / volume_[s];
   }
 
   InternalEnergies internal_energies(const InternalStep& step, const Context& context) const override {
@@ -335,6 +341,11 @@ class RodBending : public Energy, public InternalVariables {
   using Slots = std::array<std::array<int64_t, kNodes>, kNodes>;
 
   int count() const { return static_cast<int>(joints_.size()); }
+  static double stored_energy(const Joint& joint, std::span<const double> z) {
+    const double *l = &z[kInternal * static_cast<size_t>(joint.segments[0])],
+                 *r = &z[kInternal * static_cast<size_t>(joint.segments[1])];
+    return energy_of(joint, {l[5], l[6]}, {r[3], r[4]}, l[7]);
+  }
   static Pair pair_of(const double* k) { return {k[0], k[1]}; }
   size_t place_of(int segment) const {
     return 3 * static_cast<size_t>(segments_[segment].row) + segments_[segment].entry;
@@ -507,6 +518,7 @@ class RodBending : public Energy, public InternalVariables {
 
   std::vector<RodSegment> segments_;
   int first_element_;
+  std::vector<double> volume_;  // of each segment at rest [m^3]
   std::vector<StartSegment> rest_;
   std::vector<int> previous_;  // of each segment; -1: none
   std::vector<Joint> joints_;

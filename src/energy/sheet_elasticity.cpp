@@ -2,32 +2,36 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <utility>
 
 #include "base/parallel.h"
+#include "energy/bending_density.h"
 #include "energy/membrane_law.h"
 #include "mesh/elements.h"
 
 namespace aspic {
 namespace {
 
-class SheetElasticity : public TetElasticity {
+class SheetElasticity : public TetElasticity, public BendingElements {
  public:
   SheetElasticity(const TetMesh& mesh, int first, const SheetMaterial& material)
       : first_element_(mesh.tet_count() + first) {
     const auto begin = mesh.sheet.begin() + first;
     const std::vector<Triangle> corners(begin, begin + static_cast<std::ptrdiff_t>(material.laws.size()));
     const auto& X = mesh.rest;
+    thickness_.assign(mesh.thickness.begin() + first, mesh.thickness.begin() + first + std::ssize(corners));
     for (size_t t = 0; t < corners.size(); ++t)
       triangles_.push_back(make_sheet_triangle(corners[t], rest_corners(mesh, first + static_cast<int>(t))));
     for (const MembraneLaw& law : material.laws) moduli_.emplace_back(law);
     membrane_ = make_membrane(triangles_, material.laws);
     if (!material.bends) return;
     if (material.plates.empty())
-      bending_ = make_hinge_bending(X, corners, material.moment, material.rest);
+      keep(make_hinge_bending(X, corners, material.moment, material.rest));
     else
-      bending_ =
-          make_mid_edge_bending({X, corners, material.plates, material.rest, material.first_angle_row, material.held});
+      keep(
+          make_mid_edge_bending({X, corners, material.plates, material.rest, material.first_angle_row, material.held}));
   }
 
   std::string_view name() const override { return "elastic"; }
@@ -62,11 +66,23 @@ class SheetElasticity : public TetElasticity {
     parallel_for(static_cast<int>(triangles_.size()), [&](int t) { evaluate_triangle(t, x, fields); });
   }
 
+  void add_bending_density(Positions x, std::span<const double>, std::span<double> density) const override {
+    std::vector<double> per_area;
+    if (bending_per_area_) bending_per_area_(x, per_area);
+    for (size_t t = 0; t < per_area.size(); ++t) density[first_element_ + t] += per_area[t] / thickness_[t];
+  }
+
   int parameter_count() const override { return 0; }
   std::span<const MaterialParameters> parameters() const override { return {}; }
   void set_parameters(std::span<const MaterialParameters>) override {}
 
  private:
+  template <class Bending>
+  void keep(std::unique_ptr<Bending> bending) {
+    bending_per_area_ = [b = bending.get()](Positions x, std::vector<double>& energy) { b->evaluate(x, energy); };
+    bending_ = std::move(bending);
+  }
+
   SheetDeformation deformation(size_t t, Positions x) const {
     const auto& [a, b, c] = triangles_[t].corners;
     const auto& B = triangles_[t].rest_inverse;
@@ -95,7 +111,9 @@ class SheetElasticity : public TetElasticity {
   std::vector<SheetTriangle> triangles_;
   std::vector<SheetModuli> moduli_;
   std::unique_ptr<Membrane> membrane_;
-  std::unique_ptr<SteadyEnergy> bending_;  // null: none
+  std::unique_ptr<SteadyEnergy> bending_;                                  // null: none
+  std::function<void(Positions, std::vector<double>&)> bending_per_area_;  // of bending_ [J/m^2]
+  std::vector<double> thickness_;                                          // [m]
 };
 
 }  // namespace

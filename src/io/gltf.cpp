@@ -117,9 +117,10 @@ std::string glb(const GltfMesh& mesh) {
   }
   const std::string name = json_text(mesh.name);
   const std::string json =
-      R"({"asset":{"version":"2.0","generator":"Aspic"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"name":)" +
+      R"({"asset":{"version":"2.0","generator":"Aspic"},"materials":[{"doubleSided":true}],)"
+      R"("scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"name":)" +
       name + "}],\"meshes\":[{\"name\":" + name + ",\"primitives\":[{\"attributes\":{\"POSITION\":" + position +
-      "},\"indices\":" + indices + targets + "}]}]" + animations + "," + arrays.json() + "}";
+      "},\"material\":0,\"indices\":" + indices + targets + "}]}]" + animations + "," + arrays.json() + "}";
   std::string chunks;
   append_chunk(chunks, kJson, json, ' ');
   append_chunk(chunks, kBinary, arrays.bytes(), '\0');

@@ -16,6 +16,7 @@ struct GltfMesh {
   std::vector<double> times;               // time of each frame, ascending [s]
 };
 
+// The material is two-sided, for sheets. There are no normals, so that players compute those of the moved triangles.
 // Players interpolate linearly between frames. The size grows quadratically with the number of frames, but only by 4
 // bytes per pair.
 std::string glb(const GltfMesh& mesh);

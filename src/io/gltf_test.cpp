@@ -36,6 +36,7 @@ def read(i):
     return values
 mesh = head['meshes'][head['nodes'][head['scenes'][head['scene']]['nodes'][0]]['mesh']]
 part = mesh['primitives'][0]
+assert head['materials'][part['material']]['doubleSided'] is True
 base = read(part['attributes']['POSITION'])
 targets = [read(t['POSITION']) for t in part['targets']]
 sampler = head['animations'][0]['samplers'][0]

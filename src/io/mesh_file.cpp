@@ -190,6 +190,8 @@ std::variant<TetMesh, TriMesh> read_mesh(const std::string& path, std::vector<st
   if (!content.tets.empty())
     return TetMesh{std::move(content.vertices), std::move(content.tets), std::move(content.region)};
   if (!content.triangles.empty()) return TriMesh{std::move(content.vertices), std::move(content.triangles)};
+  if (!content.segments.empty())
+    throw InvalidInput(path + ": holds lines alone, which are a rod; run it, or give a body `rod`");
   throw InvalidInput(path + ": holds " +
                      (format.holds_tets && format.holds_triangles ? "neither tets nor triangles"
                       : format.holds_tets                         ? "no tets"
@@ -222,6 +224,17 @@ std::vector<std::array<Vec3d, 3>> read_uv(const std::string& path) {
     throw InvalidInput(path + ": has no texture coordinates that Aspic reads; export it as Wavefront OBJ with UVs");
   check_memory(path);
   return parse_obj_uv(path, read_file(path));
+}
+
+bool has_lines_only(const std::string& path) {
+  const MeshContent content = format_of(path).read(path);
+  return content.tets.empty() && content.triangles.empty() && !content.segments.empty();
+}
+
+void write_line_mesh(const std::string& path, const TetMesh& mesh) {
+  ASPIC_CHECK(are_indices_valid(mesh.rods, mesh.vertex_count()));
+  check_vertices(path, mesh.rest);
+  write_file(path, obj_text_of_lines(mesh));
 }
 
 TriMesh read_tri_mesh(const std::string& path) {

@@ -35,6 +35,11 @@ std::vector<std::array<Vec3d, 3>> read_uv(const std::string& path);
 // file. Throws InvalidInput like read_mesh(), and if the file has no lines.
 TetMesh read_line_mesh(const std::string& path);
 
+// Whether the file has lines but neither tets nor triangles. Throws InvalidInput like read_mesh().
+bool has_lines_only(const std::string& path);
+// Writes the vertices and rods of a mesh as an OBJ file. Throws InvalidInput like write_mesh().
+void write_line_mesh(const std::string& path, const TetMesh& mesh);
+
 enum class FileEncoding { ascii, binary };  // formats of text only reject binary
 // Reading the file back gives the same bits. The file appears whole or not at all. Throws InvalidInput if it cannot be
 // written, if a coordinate is not finite, or if the format does not hold such elements or this encoding.

@@ -189,4 +189,14 @@ std::string obj_text(const TriMesh& mesh) {
   return text;
 }
 
+std::string obj_text_of_lines(const TetMesh& mesh) {
+  std::string text = obj_text(TriMesh{mesh.rest, {}});
+  for (const Segment& segment : mesh.rods) {
+    text += 'l';
+    append_indices(text, segment, 1);
+    text += '\n';
+  }
+  return text;
+}
+
 }  // namespace aspic

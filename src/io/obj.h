@@ -14,5 +14,6 @@ MeshContent parse_obj(const std::string& file, std::string_view contents);
 // faces that lack them or have no area in them.
 std::vector<TriangleCorners> parse_obj_uv(const std::string& file, std::string_view contents);
 std::string obj_text(const TriMesh& mesh);
+std::string obj_text_of_lines(const TetMesh& mesh);  // the rods of a mesh
 
 }  // namespace aspic

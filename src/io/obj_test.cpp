@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 
 #include "base/error.h"
+#include "io/folder_test.h"
+#include "io/mesh_file.h"
 
 namespace aspic {
 namespace {
@@ -94,6 +96,19 @@ TEST(ObjUv, RejectsFacesWithoutArea) {
   EXPECT_THAT(refusal("f 1/1 2/2 3/4\n"), HasSubstr("names texture coordinates 4 of 3"));
   EXPECT_THAT(refusal("f 1/1 2/2 3/3\n"), HasSubstr("no area in its texture coordinates (0, 0), (1, 0), (2, 0)"));
   EXPECT_THAT(refusal("vt nan 0\nf 1/1 2/2 3/3\n"), HasSubstr("a.obj:7: "));
+}
+
+TEST(ObjLines, AreReadBackAsWritten) {
+  const TestFolder folder;
+  TetMesh rod{.rest = {{{0, 0, 0}}, {{0.1, 0, 1e-17}}, {{1, 1, 0}}}, .tets = {}, .region = {}};
+  rod.rods = {{2, 0}, {0, 1}};
+  EXPECT_FALSE(has_lines_only(folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nl 1 2\n")));
+  write_line_mesh(folder / "rod.obj", rod);
+  EXPECT_TRUE(has_lines_only(folder / "rod.obj"));
+  const TetMesh again = read_line_mesh(folder / "rod.obj");
+  for (size_t v = 0; v < 3; ++v)
+    for (int k = 0; k < 3; ++k) EXPECT_EQ(again.rest[v][k], rod.rest[v][k]);
+  EXPECT_EQ(again.rods, rod.rods);
 }
 
 }  // namespace

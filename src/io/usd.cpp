@@ -49,14 +49,15 @@ std::string points_text(const std::vector<float>& x) {
   return text + "]";
 }
 
-// [(lower), (upper)], so that viewers need not read every point.
-std::string extent_text(const std::vector<float>& x) {
+// [(lower), (upper)], so that viewers need not read every point. `margin`: around the points [m].
+std::string extent_text(const std::vector<float>& x, double margin) {
   std::vector<float> corners(x.begin(), x.begin() + std::min<std::ptrdiff_t>(3, std::ssize(x)));
   corners.insert(corners.end(), corners.begin(), corners.end());
   for (size_t i = 3; i < x.size(); ++i) {
     corners[i % 3] = std::min(corners[i % 3], x[i]);
     corners[3 + i % 3] = std::max(corners[3 + i % 3], x[i]);
   }
+  for (size_t i = 0; i < corners.size(); ++i) corners[i] += static_cast<float>(i < 3 ? -margin : margin);
   return points_text(corners);
 }
 
@@ -81,9 +82,40 @@ std::string head(UpAxis up, const std::vector<double>& codes, double codes_per_s
   return text + ")\n";
 }
 
-std::string topology(std::span<const Triangle> triangles) {
+// The vertices of curves in their order, where closed curves end at their first vertex.
+struct Curves {
+  std::vector<int> counts, vertices;
+
+  explicit Curves(std::span<const Segment> segments) {
+    for (const auto& [a, b] : segments) {
+      if (vertices.empty() || vertices.back() != a) counts.push_back(1), vertices.push_back(a);
+      ++counts.back(), vertices.push_back(b);
+    }
+  }
+};
+
+// Returns the points of the curves, or of all vertices of a mesh.
+std::vector<float> points_of(const UsdMesh& mesh, int sample) {
+  std::vector<float> x = mesh.points(sample), chosen;
+  if (mesh.segments.empty()) return x;
+  for (const int v : Curves(mesh.segments).vertices)
+    chosen.insert(chosen.end(), x.begin() + 3 * std::ptrdiff_t{v}, x.begin() + 3 * std::ptrdiff_t{v} + 3);
+  return chosen;
+}
+
+std::string topology(const UsdMesh& mesh) {
   std::string counts, indices;
-  for (const Triangle& triangle : triangles) {
+  if (!mesh.segments.empty()) {
+    for (const int count : Curves(mesh.segments).counts) {
+      if (!counts.empty()) counts += ", ";
+      append_number(counts, count);
+    }
+    std::string width;
+    append_number(width, 2 * mesh.radius);
+    return "        uniform token type = \"linear\"\n        int[] curveVertexCounts = [" + counts +
+           "]\n        float[] widths = [" + width + "] (\n            interpolation = \"constant\"\n        )\n";
+  }
+  for (const Triangle& triangle : mesh.triangles) {
     counts += counts.empty() ? "3" : ", 3";
     for (const int vertex : triangle) {
       if (!indices.empty()) indices += ", ";
@@ -91,7 +123,8 @@ std::string topology(std::span<const Triangle> triangles) {
     }
   }
   return "        int[] faceVertexCounts = [" + counts + "]\n        int[] faceVertexIndices = [" + indices +
-         "]\n        uniform token subdivisionScheme = \"none\"\n";
+         "]\n        uniform token subdivisionScheme = \"none\"\n" +
+         (mesh.is_two_sided ? "        uniform bool doubleSided = 1\n" : "");
 }
 
 template <class ValueText>
@@ -107,15 +140,17 @@ void write_samples(OutputFile& file, const std::string& attribute, const std::ve
 }
 
 void write_mesh_prim(OutputFile& file, const UsdMesh& mesh, const std::string& name, const std::vector<double>& codes) {
-  file.append("\n    def Mesh \"" + name + "\"\n    {\n" + topology(mesh.triangles));
+  const std::string type = mesh.segments.empty() ? "Mesh" : "BasisCurves";
+  file.append("\n    def " + type + " \"" + name + "\"\n    {\n" + topology(mesh));
   if (mesh.is_fixed) {
-    const std::vector<float> x = mesh.points(0);
-    file.append("        float3[] extent = " + extent_text(x) + "\n        point3f[] points = " + points_text(x) +
-                "\n    }\n");
+    const std::vector<float> x = points_of(mesh, 0);
+    file.append("        float3[] extent = " + extent_text(x, mesh.radius) +
+                "\n        point3f[] points = " + points_text(x) + "\n    }\n");
     return;
   }
-  write_samples(file, "float3[] extent", codes, [&](int sample) { return extent_text(mesh.points(sample)); });
-  write_samples(file, "point3f[] points", codes, [&](int sample) { return points_text(mesh.points(sample)); });
+  write_samples(file, "float3[] extent", codes,
+                [&](int sample) { return extent_text(points_of(mesh, sample), mesh.radius); });
+  write_samples(file, "point3f[] points", codes, [&](int sample) { return points_text(points_of(mesh, sample)); });
   file.append("    }\n");
 }
 

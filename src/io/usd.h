@@ -1,4 +1,4 @@
-// USD scene as text (.usda): one mesh per body with points sampled over time. Lengths are in meters.
+// USD scene as text (.usda): one mesh or set of curves per body with points sampled over time. Lengths are in meters.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -15,6 +15,9 @@ struct UsdMesh {
   std::span<const Triangle> triangles;
   std::function<std::vector<float>(int sample)> points;  // 3 per vertex [m]
   bool is_fixed = false;                                 // the first sample is that of all times
+  bool is_two_sided = false;
+  std::span<const Segment> segments = {};  // of rods, chain by chain; not empty: BasisCurves instead of a Mesh
+  double radius = 0;                       // of rods [m]
 };
 
 enum class UpAxis { y, z };

@@ -83,6 +83,32 @@ TEST_F(UsdScene, FailureKeepsOldFile) {
   EXPECT_THROW(write_usd(path("no/folder.usda"), {}, {0}, 1), InvalidInput);
 }
 
+TEST_F(UsdScene, RodsAreCurvesAndSheetsTwoSided) {
+  const std::vector<Triangle> triangles = {{0, 1, 2}};
+  const std::vector<Segment> segments = {{2, 0}, {3, 4}, {4, 1}, {1, 3}};  // a line and a ring
+  const auto points = [](int) { return std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0, 2, 0, 0, 2, 2, 0}; };
+  write_usd(path("a.usda"),
+            {{.name = "rope", .triangles = {}, .points = points, .segments = segments, .radius = 0.25},
+             {.name = "cloth", .triangles = triangles, .points = points, .is_two_sided = true}},
+            {0}, 1);
+  const std::string text = read_file(path("a.usda"));
+  EXPECT_THAT(text, HasSubstr(R"(    def BasisCurves "rope"
+    {
+        uniform token type = "linear"
+        int[] curveVertexCounts = [2, 4]
+        float[] widths = [0.5] (
+            interpolation = "constant"
+        )
+        float3[] extent.timeSamples = {
+            0: [(-0.25, -0.25, -0.25), (2.25, 2.25, 0.25)],
+        }
+        point3f[] points.timeSamples = {
+            0: [(0, 1, 0), (0, 0, 0), (2, 0, 0), (2, 2, 0), (1, 0, 0), (2, 0, 0)],
+        }
+)"));
+  EXPECT_THAT(text, HasSubstr("uniform bool doubleSided = 1\n"));
+}
+
 TEST_F(UsdScene, FixedMeshHasOneSample) {
   const std::vector<Triangle> triangles = {{0, 1, 2}};
   const auto points = [](int) { return std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0}; };

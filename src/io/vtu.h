@@ -39,6 +39,9 @@ Vtu read_vtu(const std::string& path);
 Vtu parse_vtu(std::string_view contents, const std::string& file);  // `file` is the name in messages
 // Reads only the points, 3 coordinates each [m]. Throws InvalidInput like read_vtu().
 std::vector<double> read_vtu_points(const std::string& path);
+// Reads only the field of all cells with this name, in the order of the file; empty if it has none. Throws InvalidInput
+// like read_vtu().
+std::vector<double> read_vtu_cell_field(const std::string& path, std::string_view name);
 // Reads the pieces of a .pvtu and returns the whole grid of tets, in the order of the fields "vertex" and "tet", which
 // it removes. Throws InvalidInput if they are missing, or if vertices or tets are.
 Vtu read_pvtu(const std::string& path);

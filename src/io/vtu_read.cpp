@@ -122,6 +122,25 @@ std::vector<double> read_vtu_points(const std::string& path) {
   return points;
 }
 
+std::vector<double> read_vtu_cell_field(const std::string& path, std::string_view name) {
+  const std::string contents = read_file(path);
+  const XmlElement root = parse_xml(contents, path, "AppendedData");
+  const VtkFile file = vtk_file(root, "UnstructuredGrid", path);
+  std::vector<double> values;
+  for (const XmlElement& piece : section(file, root, "UnstructuredGrid").children) {
+    const XmlElement* fields = piece.name == "Piece" ? piece.child("CellData") : nullptr;
+    if (!fields) continue;
+    const auto cells = static_cast<size_t>(count_attribute(file, piece, "NumberOfCells", 0, kMaxCount));
+    for (const XmlElement& array : fields->children) {
+      const std::string* own = array.attribute("Name");
+      if (array.name != "DataArray" || is_text(array) || !own || *own != name) continue;
+      const Field field = read_field(file, array, cells);
+      values.insert(values.end(), field.values.begin(), field.values.end());
+    }
+  }
+  return values;
+}
+
 Vtu parse_vtu(std::string_view contents, const std::string& name) {
   const XmlElement root = parse_xml(contents, name, "AppendedData");
   const VtkFile file = vtk_file(root, "UnstructuredGrid", name);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "contact/barrier.h"
+#include "dynamics/internal_terms.h"
 #include "dynamics/step_fields.h"
 #include "io/vtu.h"
 #include "math/symmetric_eigen.h"
@@ -137,6 +138,8 @@ VtuFields frame_fields(const Simulation& simulation, const StepReport* report, F
   if (contents.mechanics) add_mechanics(simulation, tet_fields.cauchy, real, fields);
   for (Field& field : cell_fields(simulation, std::move(tet_fields), real))
     fields.cell_fields.push_back(std::move(field));
+  if (std::vector<double> bending = bending_density(model, state.q, state.internal); !bending.empty())
+    fields.cell_fields.push_back({"bending_density", 1, std::move(bending), real});
   if (report && !report->mesh_density.empty())
     fields.cell_fields.push_back({"mesh_error", 1, report->mesh_density, real});
   fields.file_fields = file_fields(state.time, report);

@@ -26,6 +26,13 @@ std::vector<float> flat(const std::vector<Vec3d>& points) {
   return numbers;
 }
 
+void write_obj(const std::filesystem::path& path, const TriMesh& mesh, const std::vector<Segment>& segments) {
+  if (segments.empty()) return write_mesh(path, mesh);
+  TetMesh lines{.rest = mesh.vertices, .tets = {}, .region = {}};
+  lines.rods = segments;
+  write_line_mesh(path, lines);
+}
+
 }  // namespace
 
 RunSkins::RunSkins(const RunLayout& layout, const Scene& scene)
@@ -41,7 +48,7 @@ RunSkins RunSkins::create(const RunLayout& layout, const Scene& scene) {
   for (size_t i = 0; i < skins.skins_.size(); ++i) {
     if (!skins.output_.pc2 && !skins.output_.usd) break;
     const TriMesh& rest = skins.skins_[i].rest;
-    write_mesh(layout.skin_rest(skins.names_[i]), rest);
+    write_obj(layout.skin_rest(skins.names_[i]), rest, skins.skins_[i].segments);
     skins.caches_.push_back(Pc2File::create(layout.skin_cache(skins.names_[i]), rest.vertex_count()));
   }
   return skins;
@@ -51,7 +58,7 @@ RunSkins RunSkins::resume(const RunLayout& layout, const Scene& scene, int frame
   RunSkins skins(layout, scene);
   for (size_t i = 0; i < skins.skins_.size(); ++i) {
     if (!skins.output_.pc2 && !skins.output_.usd) break;
-    write_mesh(layout.skin_rest(skins.names_[i]), skins.skins_[i].rest);
+    write_obj(layout.skin_rest(skins.names_[i]), skins.skins_[i].rest, skins.skins_[i].segments);
     skins.caches_.push_back(
         Pc2File::resume(layout.skin_cache(skins.names_[i]), skins.skins_[i].rest.vertex_count(), frames));
   }
@@ -65,7 +72,7 @@ void RunSkins::add_frame(int frame, std::span<const double> q) {
     if (!caches_.empty()) caches_[i].append(x_);
     if (!output_.obj && !output_.ply) continue;
     const TriMesh mesh = moved(skins_[i].rest, x_);
-    if (output_.obj) write_mesh(layout_.skin_frame(names_[i], frame, ".obj"), mesh);
+    if (output_.obj) write_obj(layout_.skin_frame(names_[i], frame, ".obj"), mesh, skins_[i].segments);
     if (output_.ply) write_mesh(layout_.skin_frame(names_[i], frame, ".ply"), mesh, FileEncoding::binary);
   }
 }
@@ -98,9 +105,12 @@ void RunSkins::write_usd(const std::vector<double>& frame_times, const RunObstac
   if (!output_.usd || skins_.empty()) return;
   std::vector<UsdMesh> meshes;
   for (size_t i = 0; i < skins_.size(); ++i) {
-    meshes.push_back({.name = skins_[i].body, .triangles = skins_[i].rest.triangles, .points = [this, i](int frame) {
-                        return caches_[i].sample(frame);
-                      }});
+    meshes.push_back({.name = skins_[i].body,
+                      .triangles = skins_[i].rest.triangles,
+                      .points = [this, i](int frame) { return caches_[i].sample(frame); },
+                      .is_two_sided = skins_[i].is_sheet,
+                      .segments = skins_[i].segments,
+                      .radius = skins_[i].radius});
   }
   for (size_t i = 0; i < obstacles.at_start().size(); ++i) {
     const ObstacleSurface& start = obstacles.at_start()[i];

@@ -1,8 +1,10 @@
 // Runs of shells whose states have angles besides the vertices.
 #include <gtest/gtest.h>
 
+#include "dynamics/internal_terms.h"
 #include "io/folder_test.h"
 #include "io/vtu.h"
+#include "mesh/elements.h"
 #include "results/run_directory.h"
 #include "scene/scene.h"
 
@@ -42,10 +44,31 @@ TEST(ShellRun, FramesHaveTheVerticesOnly) {
   ASSERT_FALSE(model.angle_rows.empty());
   const std::string file = (path / "frames" / "body_000002.vtu").string();
   EXPECT_EQ(read_vtu_points(file).size(), 3 * model.mesh.rest.size());
+  EXPECT_EQ(read_vtu_cell_field(file, "bending_density").size(), model.mesh.sheet.size());
+  EXPECT_TRUE(read_vtu_cell_field(file, "bending").empty());
   const Vtu frame = read_vtu(file);
   EXPECT_FALSE(frame.point_fields.empty());
   for (const Field& field : frame.point_fields)
     EXPECT_EQ(field.values.size(), field.components * model.mesh.rest.size()) << field.name;
+}
+
+TEST(ShellRun, DensitiesSumToTheEnergy) {
+  const TestFolder folder;
+  Scene scene = load_scene(folder.write("flag.toml", kShellFlag), {});
+  for (int i = 0; i < 4; ++i) scene.simulation.step();
+  const Model& model = scene.simulation.model();
+  const State& state = scene.simulation.state();
+  const TetFields fields = scene.simulation.tet_fields();
+  const std::vector<double> bending = bending_density(model, state.q, state.internal);
+  double sum = 0, bent = 0;
+  for (int t = 0; t < model.mesh.element_count(); ++t) {
+    bent += bending[t] * element_volume(model.mesh, t);
+    sum += (fields.energy_density[t] + bending[t]) * element_volume(model.mesh, t);
+  }
+  const TetElasticity& V = *model.elasticity.front();
+  const double expected = V.value(state.q, *V.make_context());
+  EXPECT_GT(bent, 0.01 * expected);
+  EXPECT_NEAR(sum, expected, 1e-6 * expected);
 }
 
 TEST(ShellRun, InterruptedRunResumesToTheSameBits) {

@@ -30,12 +30,16 @@ std::vector<Choice> choices_of_space(double scale, double extent);
 
 // Returns the surface of a file that is a sheet, or of any file of triangles if it `has_shell`.
 std::optional<TriMesh> sheet_in(const std::filesystem::path& path, bool has_shell);
-// How a sheet is placed: its scale, and the direction of gravity.
-struct SheetPlacement {
+// Returns the lines of a file without tets and triangles, or of any file with lines if it `has_rod`.
+std::optional<TetMesh> rod_in(const std::filesystem::path& path, bool has_rod);
+// How a sheet or a rod is placed: its scale, and the direction of gravity.
+struct ThinPlacement {
   double scale;
   Vec3d gravity;
 };
 // A sheet that is level falls onto a ball; others hang from their highest vertices.
-Defaults defaults_for_sheet(const std::filesystem::path& path, const TriMesh& sheet, const SheetPlacement& placement);
+Defaults defaults_for_sheet(const std::filesystem::path& path, const TriMesh& sheet, const ThinPlacement& placement);
+// A rod hangs from its highest vertices, or from its first end if it is level.
+Defaults defaults_for_rod(const std::filesystem::path& path, const TetMesh& rod, const ThinPlacement& placement);
 
 }  // namespace aspic

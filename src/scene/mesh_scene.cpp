@@ -217,15 +217,20 @@ SceneSource scene_of_mesh(const std::filesystem::path& path, const std::vector<s
   const Table first = read(minimal);
   const Value& body = first.find("body")->array().front();
   const bool has_scale = is_overridden("scale", overrides) && body["scale"].is_number();
-  if (const std::optional<TriMesh> sheet = sheet_in(path, is_overridden("shell", overrides))) {
-    const double scale = has_scale ? body["scale"].number() : guessed_scale(sheet->vertices);
-    const Defaults defaults = defaults_for_sheet(path, *sheet, {scale, first.find("gravity")->vector()});
+  const auto thin_scene = [&](const Defaults& defaults) -> SceneSource {
     return {read(defaults.toml), path.stem().string(), file, {}, notes_of(defaults, overrides)};
-  }
+  };
+  const auto placed = [&](const std::vector<Vec3d>& X) -> ThinPlacement {
+    return {has_scale ? body["scale"].number() : guessed_scale(X), first.find("gravity")->vector()};
+  };
+  if (const std::optional<TetMesh> rod = rod_in(path, is_overridden("rod", overrides)))
+    return thin_scene(defaults_for_rod(path, *rod, placed(rod->rest)));
+  if (const std::optional<TriMesh> sheet = sheet_in(path, is_overridden("shell", overrides)))
+    return thin_scene(defaults_for_sheet(path, *sheet, placed(sheet->vertices)));
   const Value* size = body.find("mesh_size");
   LoadedMesh mesh = load_mesh(path, size ? size->number() : 0, loader);
   if (mesh.tets.rest.empty() || mesh.tets.tets.empty())
-    throw InvalidInput(file + ": contains no tets and no triangles; use a mesh with tets or a closed surface");
+    throw InvalidInput(file + ": contains no tets and no triangles; use a mesh with tets, a surface or lines");
   const double extent = longest_side(bounding_box(mesh.tets.rest));
   if (!(extent > 0) || !std::isfinite(extent)) throw InvalidInput(file + ": all vertices coincide; use another mesh");
 

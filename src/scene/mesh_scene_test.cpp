@@ -144,6 +144,19 @@ TEST(MeshAlone, SurfaceIsFilledOnce) {
   EXPECT_EQ(scene.simulation.state().q, again.simulation.state().q);
 }
 
+TEST(MeshAlone, LinesAreARod) {
+  const TestFolder folder;
+  Scene level = load_scene(folder.write("cable.obj", "v 0 0 0\nv 1 0 0\nv 2 0.1 0\nv 3 0 0\nl 4 3 2 1\n"));
+  EXPECT_THAT(level.notes, Contains(HasSubstr("rod.radius = 0.01 m")));
+  EXPECT_THAT(level.notes, Contains(HasSubstr("swings from its end, vertex 3")));
+  EXPECT_EQ(level.simulation.model().mesh.rods.size(), 3u);
+  for (int step = 0; step < 20; ++step) EXPECT_TRUE(is_success(level.simulation.step().status));
+  const Scene upright = load_scene(folder.write("hair.obj", "v 0 0 0\nv 0 1 0\nv 0.1 2 0\nl 1 2 3\n"));
+  EXPECT_THAT(upright.notes, Contains(HasSubstr("so that the rod hangs")));
+  EXPECT_EQ(upright.simulation.model().pins[0].vertices.size(), 1u);
+  EXPECT_THAT(refusal_of(folder.write("point.obj", "v 0 0 0\nv 0 0 0\nl 1 2\n")), HasSubstr("all vertices coincide"));
+}
+
 TEST(MeshAlone, OpenSurfaceIsRejected) {
   const TestFolder folder;
   folder.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\n");

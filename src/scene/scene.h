@@ -24,9 +24,12 @@ struct OutputOptions {
 
 // A surface to draw.
 struct Skin {
-  TriMesh rest;         // the fine surface, or the boundary of the body
+  TriMesh rest;         // the fine surface, the boundary of the body, a sheet, or the vertices of a rod
   Embedding embedding;  // into the vertices of the model
   std::string body;     // name of its BodyRange
+  bool is_sheet = false;
+  std::vector<Segment> segments = {};  // of a rod, chain by chain
+  double radius = 0;                   // of a rod [m]
 };
 
 struct Table;  // see scene/value.h

@@ -150,7 +150,9 @@ class SceneBuilder {
       add_to_model(body);
       for (Carrier& carrier : mesh.embedding.carriers)
         for (int n = 0; n < carrier.count; ++n) carrier.vertex[n] = body.model_vertex(carrier.vertex[n]);
-      skins_.push_back({std::move(mesh.skin), std::move(mesh.embedding), body.name()});
+      const double radius = body.mesh.radius.empty() ? 0 : body.mesh.radius.front();
+      skins_.push_back({std::move(mesh.skin), std::move(mesh.embedding), body.name(), !body.mesh.sheet.empty(),
+                        body.mesh.rods, radius});
       bodies_.push_back(std::move(body));
     }
   }

@@ -141,6 +141,7 @@ export interface Scene {
   has_skin: boolean; // whether a fine skin exists apart from the cage
   vertices: number;
   tets: number;
+  triangles?: number; // of sheets; missing in recordings of earlier versions
   bodies: string[];
   body_tets: number[]; // first tet of each body, in the user's numbering
   lower: Vec3; // bounding box of the initial state, with obstacles that are not much larger

@@ -3,7 +3,8 @@ import { unpacked } from "./pack";
 import type { Command, Obstacle, Picture, Query, State, TextReply, Vec3, VertexReply } from "./protocol";
 import { carried, normalsOf, type RecordedSurface, Recording } from "./recording";
 import type { Incoming, Source } from "./source";
-import { vectorAt } from "./view/lens";
+import { type Box, boxOf } from "./view/body";
+import { length, minus, vectorAt } from "./view/lens";
 import { extremes } from "./view/ranges";
 
 // Clock that calls back once per frame of the screen. Tests use their own.
@@ -13,6 +14,7 @@ export interface Pulse {
 }
 const kScreen: Pulse = { now: () => performance.now(), next: (callback) => requestAnimationFrame(callback) };
 
+const kLargest = 4; // diagonal of bodies and obstacles in a picture, relative to that of the bodies
 const kUnchangeable = "a recorded run cannot be changed; aspic view SCENE runs it live";
 const kNotRecorded = "a recorded run does not contain this; aspic view SCENE computes it";
 
@@ -103,15 +105,15 @@ export class RecordedSource implements Source {
     return this.opened().head.frames;
   }
 
-  // Bounding box of the scene and all positions of all frames.
-  get box(): { lower: Vec3; upper: Vec3 } {
-    const { lower, size } = this.opened().head;
-    const { scene } = this.surface;
-    const axes = [0, 1, 2] as const;
-    return {
-      lower: axes.map((c) => Math.min(lower[c], scene.lower[c])) as Vec3,
-      upper: axes.map((c) => Math.max(lower[c] + size[c], scene.upper[c])) as Vec3,
-    };
+  // Bounding box of all positions of all frames and of the surfaces of obstacles, unless these are so large that the
+  // bodies would be tiny. Planes have no end, and bodies that fall onto one are in the box.
+  get box(): Box {
+    const { lower, size, obstacles = [], frames } = this.opened().head;
+    const bodies = { lower, upper: lower.map((x, c) => x + size[c]) as Vec3 };
+    const seen = [...obstacles, ...(frames.obstacles ?? []).flat()].filter(({ plane }) => !plane).map(({ points }) => points);
+    const all = boxOf(Float32Array.from([lower, bodies.upper, ...seen].flat()));
+    const diagonal = (box: Box): number => length(minus(box.upper, box.lower));
+    return diagonal(all) <= kLargest * diagonal(bodies) ? all : bodies;
   }
 
   // Smallest and largest value of a field on the surface during the run.

@@ -42,7 +42,7 @@ from . import plot  # noqa: E402
 from .energies import Energy, TetEnergy, check_derivatives  # noqa: E402
 from .fits import Equilibrium, Trajectory, capture, fit, lame, verify  # noqa: E402
 from .live import View, view  # noqa: E402
-from .meshes import Mesh, Surface, box, cylinder, read_mesh, sphere, torus  # noqa: E402
+from .meshes import Mesh, Surface, box, cylinder, read_mesh, rod, sheet, sphere, torus  # noqa: E402
 from .optimize import backtrack, minimize, test_function  # noqa: E402
 from .results import Run  # noqa: E402
 from .scenes import Body, Material, Scene  # noqa: E402
@@ -53,6 +53,6 @@ __all__ = [
     "NotConverged", "Objective", "Reports", "Run", "Scene", "Simulation", "Snapshot", "StepReport", "Surface",
     "TetEnergy", "Trace", "Trajectory", "View", "__version__", "backtrack", "box", "capture", "check_derivatives",
     "compare", "cylinder", "fit", "integrator_names", "lame", "linear_solver_names", "materials", "minimize",
-    "minimizer_names", "plot", "read_mesh", "set_thread_count", "sphere", "test_function", "test_functions",
-    "thread_count", "torus", "verify", "view",
+    "minimizer_names", "plot", "read_mesh", "rod", "set_thread_count", "sheet", "sphere", "test_function",
+    "test_functions", "thread_count", "torus", "verify", "view",
 ]

@@ -126,6 +126,57 @@ class Surface:
         return Mesh(*arrays)
 
 
+class Polyline:
+    """The middle line of a rod: vertices (n, 3) [m] in their order; closed: the last is joined to the first."""
+
+    def __init__(self, vertices, closed=False):
+        self.vertices, _ = _aspic.check_surface(vertices, np.empty((0, 3), int))
+        self.closed = bool(closed)
+        if len(self.vertices) < 2 + self.closed:
+            raise _aspic.InvalidInput(f"rod: {len(self.vertices)} points; expected at least {2 + self.closed}")
+
+    def __repr__(self):
+        return f"<Polyline: {len(self.vertices)} vertices{', closed' if self.closed else ''}>"
+
+    def write(self, path):
+        """Writes an OBJ file."""
+        order = [*range(1, len(self.vertices) + 1)] + [1] * self.closed
+        with open(path, "w") as file:
+            np.savetxt(file, self.vertices, fmt="v %.17g %.17g %.17g")
+            file.write(" ".join(["l", *map(str, order)]) + "\n")
+
+
+class Thin:
+    """A sheet or a rod for Scene.add(): its mesh and the keys that make a body thin. Made by sheet() and rod()."""
+
+    def __init__(self, mesh, **table):
+        self.mesh, self.table = mesh, table
+
+    def __repr__(self):
+        return f"<{' '.join(self.table)} of {self.mesh!r}>"
+
+
+def sheet(mesh, thickness, **shell):
+    """A sheet [m], with the other keys of `shell`: moment, bending, ...
+
+    mesh: a Surface, the path of a mesh file, or a dict such as {"rectangle": {"width": 1, "height": 1, "size": 0.05}}.
+    """
+    return Thin(mesh, shell={"thickness": thickness, **shell})
+
+
+def rod(mesh, radius, closed=False, **keys):
+    """A rod [m], with the other keys of `rod`: rest, natural_twist, twist_first, twist_last.
+
+    mesh: the points (n, 3) of its middle line, joined to a ring if `closed`; the path of a file with lines; or a dict
+    such as {"line": {"from": [0, 0, 0], "to": [1, 0, 0], "size": 0.02}}.
+    """
+    if not isinstance(mesh, (str, os.PathLike, dict)):
+        mesh = Polyline(mesh, closed)
+    elif closed:
+        raise _aspic.InvalidInput("closed: is for points; a file or a shape is closed by itself")
+    return Thin(mesh, rod={"radius": radius, **keys})
+
+
 def _mesher():
     """aspic-mesh of the build or of the installation; empty: searched on the PATH."""
     here = os.path.dirname(os.path.abspath(_aspic.__file__))

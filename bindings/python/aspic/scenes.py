@@ -12,7 +12,7 @@ import numpy as np
 
 from . import _aspic
 from ._checks import Strict, bounded, frozen, is_path
-from .meshes import Mesh, Surface
+from .meshes import Mesh, Polyline, Surface, Thin
 
 _MOST_TETS = 20_000  # of a body whose model is built for checks
 _PLACEHOLDER = {"name": "body", "shape": {"sphere": {"radius": 1.0, "size": 1.0}}}
@@ -251,16 +251,18 @@ class Scene(Strict):
         if alone != springs:  # the vertices of other bodies are unknown
             document["body"] = [{**table, "spring": [spring for spring in springs if not _leaves(spring)]}]
             source = _check_keys(document, self.name)
-        if (body and body._mesh) or "shell" in table or not _is_surface(table.get("mesh")):
+        if (body and body._mesh) or "shell" in table or "rod" in table or not _is_surface(table.get("mesh")):
             source.check_model(_MOST_TETS)
 
     def add(self, mesh, name=None, material=None, **values):
         """Adds a body. mesh: a Mesh, the path of a mesh file, or a dict such as {"sphere": {"radius": 1, "size": 0.2}}.
 
-        With shell={"thickness": 1e-3} the body is a sheet; mesh is then a Surface, a file, or a shape such as
-        {"rectangle": {"width": 1, "height": 1, "size": 0.05}}. The body has a copy of a mesh and of arrays.
+        sheet() and rod() make thin bodies: scene.add(aspic.sheet("garment.obj", thickness=1e-3)). The body has a copy
+        of a mesh and of arrays.
         """
         self._require_code("add()")
+        if isinstance(mesh, Thin):
+            mesh, values = mesh.mesh, {**mesh.table, **values}
         table = {"name": name or f"body{len(self.bodies) + 1}", **values}
         if isinstance(mesh, Mesh):
             table["mesh"] = self._file("msh")
@@ -271,6 +273,10 @@ class Scene(Strict):
             table["mesh"] = self._file("obj")
             mesh = mesh._constant()
             mesh.write(table["mesh"])
+        elif isinstance(mesh, Polyline):
+            table["mesh"] = self._file("obj")
+            mesh.write(table["mesh"])
+            mesh = None
         else:
             table["shape" if isinstance(mesh, dict) else "mesh"] = mesh
             mesh = None

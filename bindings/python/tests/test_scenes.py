@@ -364,3 +364,26 @@ def test_sheets_of_arrays_files_and_shapes(tmp_path):
         cloth.mesh.vertices = grid
     with pytest.raises(aspic.InvalidInput, match="encloses no volume"):
         aspic.Scene().add({"rectangle": {"width": 1, "height": 1, "size": 0.5}})
+
+
+def test_sheet_and_rod(tmp_path):
+    scene = aspic.Scene(time={"step": 0.01, "duration": 0.03})
+    square = aspic.Surface([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
+    cloth = scene.add(aspic.sheet(square, 1e-3, moment=1e-5), name="cloth", material={"density": 400.})
+    assert cloth.table["shell"] == {"thickness": 1e-3, "moment": 1e-5} and len(cloth.vertices) == 4
+    points = [[0, 0, 2], [0.1, 0, 2], [0.2, 1e-17, 2], [0.2, 0.1, 2]]
+    scene.add(aspic.rod(points, radius=2e-3), name="cable").pin([0])
+    scene.add(aspic.rod(np.array(points) + [0, 0, 1], 2e-3, closed=True, rest="straight"), name="loop")
+    scene.add(aspic.rod({"line": {"from": [0, 0, 4], "to": [1, 0, 4], "size": 0.1}}, 2e-3), name="line")
+    (tmp_path / "cable.obj").write_text("v 0 0 5\nv 1 0 5\nl 1 2\n")
+    scene.add(aspic.rod(tmp_path / "cable.obj", 2e-3), name="file")
+    sim = scene.simulation() if hasattr(scene, "simulation") else aspic.Simulation(scene)
+    assert (sim.rest[4:8] == points).all() and sim.step().ok
+    for mesh, words in ([[0, 0, 0]], "at least 2"), ([[0, 0], [1, 1]], "shape"), ([[0, 0, 0], [np.nan, 0, 0]], "finite"):
+        with pytest.raises(aspic.InvalidInput, match=words):
+            scene.add(aspic.rod(mesh, 1e-3))
+    with pytest.raises(aspic.InvalidInput, match="thickness = -1"):
+        scene.add(aspic.sheet(square, -1))
+    with pytest.raises(aspic.InvalidInput, match="closed"):
+        aspic.rod("cable.obj", 1e-3, closed=True)
+    assert len(scene.bodies) == 5

@@ -44,7 +44,7 @@ export function ledgerColumns(potentials: readonly string[]): Column[] {
     summed("pin_work", "work of pins", "work of moving pins"),
     summed("load_work", "work of loads", "work of moving spring targets and time-dependent loads"),
     summed("muscle_work", "work of muscles", "work of changing activations"),
-    summed("obstacle_work", "work of obstacles and pressures", "work of moving obstacles, and of pressures on open patches beyond the change of their potential"),
+    summed("obstacle_work", "work of obstacles, wind and pressures", "work of moving obstacles, of wind, and of pressures on open patches beyond the change of their potential"),
     summed("damping_loss", "dissipation", "dissipated by damping and friction"),
     summed("numerical_loss", "numerical loss", "dissipated by the integrator"),
     line("balance", "balance", "T + V − works + losses: constant if every step is solved accurately", kWider),

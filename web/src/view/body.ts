@@ -62,6 +62,17 @@ function sheetFlags(geometry: Geometry, tets: number): THREE.BufferAttribute {
   return new THREE.BufferAttribute(flags, 1);
 }
 
+// Edges to draw: of the tube of a rod only its cross sections, which mark the segments. `rods`: its first element.
+export function wiresOf(geometry: Geometry, rods: number): Uint32Array {
+  const tube = new Set<number>();
+  geometry.tet.forEach((element, t) => {
+    if (element >= rods) for (let c = 0; c < 3; ++c) tube.add(geometry.triangles[3 * t + c]);
+  });
+  const { edges, vertex } = geometry;
+  const isShown = (a: number, b: number): boolean => !tube.has(a) || vertex[a] === vertex[b];
+  return tube.size === 0 ? edges : edges.filter((_, i) => isShown(edges[i - (i % 2)], edges[i - (i % 2) + 1]));
+}
+
 export class Body {
   readonly root = new THREE.Group(); // meters inside, units of the stage outside
   readonly edge: number; // mean edge length at rest [m]
@@ -89,6 +100,7 @@ export class Body {
     readonly geometry: Geometry,
     bodyTets: readonly number[] = [],
     tets = Infinity, // number of tets; elements from there on are triangles of sheets, which have no inside
+    sheet = Infinity, // number of triangles of sheets; elements after them are segments of rods
   ) {
     this.bodyCount = bodyTets.length;
     this.bodies = this.bodyCount > 1 ? bodiesOf(geometry, bodyTets) : null;
@@ -101,7 +113,7 @@ export class Body {
     this.values = new THREE.BufferAttribute(new Float32Array(n), 1);
     for (const attribute of [this.positions, this.normals, this.values]) attribute.setUsage(THREE.DynamicDrawUsage);
     this.mesh = new THREE.Mesh(this.shape(geometry.triangles, true), this.surface);
-    this.wires = new THREE.LineSegments(this.shape(geometry.edges, false), this.lines);
+    this.wires = new THREE.LineSegments(this.shape(wiresOf(geometry, tets + sheet), false), this.lines);
     this.pins = new THREE.Points(this.shape(new Uint32Array(0), false), this.pinMaterial);
     this.mesh.castShadow = this.mesh.receiveShadow = true;
     this.wires.renderOrder = 1;

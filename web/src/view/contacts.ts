@@ -1,8 +1,9 @@
-// Contact points in 3-D, colored by pressure. Those behind a body shine through it faintly.
+// Contact points in 3-D, colored by pressure. Those behind a body shine through it faintly, but not through obstacles.
 import * as THREE from "three";
 import { short } from "../numbers";
 import type { StepRow } from "../protocol";
 import { colorAt } from "./colorMaps";
+import { kBeforeObstacles } from "./obstacles";
 import { makePinMaterial } from "./shading";
 import { valueText } from "./values";
 
@@ -46,7 +47,7 @@ export class ContactDots extends THREE.Group {
       const material = makePinMaterial(this.lift);
       Object.assign(material, { size: kSize, vertexColors: true, depthWrite: false, depthFunc, opacity: i === 0 ? kHidden : 1 });
       const dots = new THREE.Points(this.geometry, material);
-      return Object.assign(dots, { frustumCulled: false, renderOrder: 3 + i });
+      return Object.assign(dots, { frustumCulled: false, renderOrder: i === 0 ? kBeforeObstacles : 4 });
     });
     this.materials = points.map(({ material }) => material);
     this.add(...points);

@@ -46,7 +46,7 @@ export class Figure {
     const { side, stage } = this;
     if (!stage || !side?.geometry || this.body?.geometry === side.geometry) return false;
     stage.place(side.scene); // show() below removes the present body
-    this.body = new Body(side.geometry, side.scene.body_tets, side.scene.tets);
+    this.body = new Body(side.geometry, side.scene.body_tets, side.scene.tets, side.scene.triangles);
     stage.show(this.body);
     this.body.setPins(side.pins);
     this.body.setFibres(side.fibres);
