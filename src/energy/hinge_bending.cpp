@@ -249,7 +249,7 @@ class Creases final : public HingeTerm<Energy>, public InternalVariables, public
   void add_bending_density(Positions, std::span<const double> z, std::span<double> density) const override {
     for (int i = 0; i < count(); ++i) {
       const double share = 0.5 * energy(i, z[hinges_[i].side]);
-      for (const int t : hinges_[i].triangles) density[range_.first + t] += share / volumes_[t];
+      for (const int t : hinges_[i].triangles) density[range_.first_tet + t] += share / volumes_[t];
     }
   }
   InternalEnergies internal_energies(const InternalStep& step, const Context& context) const override {
