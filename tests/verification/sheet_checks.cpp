@@ -132,7 +132,8 @@ double drape_coefficient(double size, const Subject& subject) {
   std::vector<int> rim;
   for (int v = 0; v < mesh.vertex_count(); ++v)
     if (norm(mesh.rest[v]) > kCloth * (1 - 1e-6)) rim.push_back(v);
-  std::ranges::sort(rim, {}, [&](int v) { return std::atan2(mesh.rest[v][1], mesh.rest[v][0]); });
+  const auto angle = [&](int v) { return std::atan2(mesh.rest[v][1], mesh.rest[v][0]); };
+  std::sort(rim.begin(), rim.end(), [&](int a, int b) { return angle(a) < angle(b); });
   double shadow = 0;
   for (size_t i = 0; i < rim.size(); ++i) {
     const Vec3d a = point(simulation.state().q, rim[i]), b = point(simulation.state().q, rim[(i + 1) % rim.size()]);
