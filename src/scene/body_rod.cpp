@@ -63,10 +63,8 @@ void check_rod(const TetMesh& mesh, const Value& body, const Place& place) {
   if (const auto unused = std::count(is_used.begin(), is_used.end(), 0); unused > 0)
     throw error_at(place, which + std::to_string(unused) + " vertices belong to no segment; remove them");
   std::vector<Vec3d> tangent_to(mesh.rest.size());
-  for (const auto& [a, b] : mesh.rods) {
-    const Vec3d edge = mesh.rest[b] - mesh.rest[a];
-    tangent_to[b] = 1 / norm(edge) * edge;
-  }
+  for (const auto& [a, b] : mesh.rods)
+    tangent_to[b] = 1 / norm(mesh.rest[b] - mesh.rest[a]) * (mesh.rest[b] - mesh.rest[a]);
   for (const auto& [a, b] : mesh.rods)
     if (1 + dot(tangent_to[a], tangent_to[b]) < kFolded)
       throw error_at(place, which + "it folds back on itself at vertex " + std::to_string(a) +
