@@ -16,6 +16,7 @@
 namespace aspic {
 namespace {
 
+constexpr double kFolded = 1e-12;  // 1 + cosine of the turn at a vertex, below which bending overflows
 constexpr double kThickRod = 0.1;  // radius relative to the length, above which a body is no rod
 
 TetMesh rod_from_shape(const Value& shape, const MeshLoader& loader) {
@@ -48,7 +49,7 @@ double rod_length(const TetMesh& mesh) {
   return length;
 }
 
-// Throws InvalidInput for segments without length, and for vertices of no segment.
+// Throws InvalidInput for segments without length, for vertices of no segment, and where a rod folds back.
 void check_rod(const TetMesh& mesh, const Value& body, const Place& place) {
   const std::string which = "body '" + body["name"].text() + "': ";
   std::vector<char> is_used(mesh.rest.size(), 0);
@@ -61,6 +62,13 @@ void check_rod(const TetMesh& mesh, const Value& body, const Place& place) {
   }
   if (const auto unused = std::count(is_used.begin(), is_used.end(), 0); unused > 0)
     throw error_at(place, which + std::to_string(unused) + " vertices belong to no segment; remove them");
+  std::vector<Vec3d> tangent_to(mesh.rest.size());
+  for (const auto& [a, b] : mesh.rods)
+    tangent_to[b] = 1 / norm(mesh.rest[b] - mesh.rest[a]) * (mesh.rest[b] - mesh.rest[a]);
+  for (const auto& [a, b] : mesh.rods)
+    if (1 + dot(tangent_to[a], tangent_to[b]) < kFolded)
+      throw error_at(place, which + "it folds back on itself at vertex " + std::to_string(a) +
+                                ", where its curvature is infinite; move the vertex or its neighbors");
 }
 
 // The ends of the chains of a body, as indices of its segments.
@@ -145,6 +153,7 @@ BodyMesh make_rod_mesh(Value& body, MeshLoader& loader) {
     throw error_at(body.place, why + " (choose a coarser polyline)");
   loader.tets += count;
   const double radius = body["rod"]["radius"].number(), length = rod_length(mesh);
+  require_proportion(body["rod"], "radius", length);
   mesh.radius.assign(mesh.rods.size(), radius);
   if (radius > kThickRod * length)
     loader.notes.push_back("body '" + body["name"].text() + "': its radius of " + number_text(radius) +

@@ -27,6 +27,7 @@ namespace aspic {
 namespace {
 
 constexpr double kAcross = 1e-6;  // least sine between the warp and the normal of a triangle
+constexpr double kFastest = 1e4;  // speed of wind [m/s]
 constexpr double kThick = 0.1;    // thickness relative to the extent, above which a body is no sheet
 
 std::string list_of(const std::vector<int>& triangles) {
@@ -193,12 +194,18 @@ BodyMesh make_sheet_mesh(Value& body, MeshLoader& loader) {
   if (shape && pattern)
     throw error_at(pattern->place, "pattern: a shape has no texture coordinates (give an OBJ file as `mesh`)");
   std::vector<TriangleCorners> uv;
+  bool is_solid = shape && !shape->find("rectangle") && !shape->find("disc") && !shape->find("tube");
   const auto read = [&](const std::string& path) {
     if (pattern) uv = read_uv(path);
-    return read_tri_mesh(path);
+    auto mesh = read_mesh(path);
+    is_solid = std::holds_alternative<TetMesh>(mesh);
+    return is_solid ? boundary_surface(std::get<TetMesh>(mesh)).surface : std::get<TriMesh>(std::move(mesh));
   };
   TriMesh surface = shape ? shape_surface(*shape, loader) : thin_mesh_from_file(body, loader, read);
   check(surface, body, place);
+  if (is_solid)
+    loader.notes.push_back("body '" + body["name"].text() +
+                           "': its shell is the surface of a solid, and hollow (remove shell to fill it)");
   if (const std::string why = loader.why_not(surface.triangle_count()); !why.empty())
     throw error_at(body.place, why + " (choose a coarser mesh)");
   loader.tets += surface.triangle_count();
@@ -216,7 +223,9 @@ BodyMesh make_sheet_mesh(Value& body, MeshLoader& loader) {
   const double thickness = body["shell"]["thickness"].number();
   mesh.thickness.assign(mesh.sheet.size(), thickness);
   if (pattern) add_pattern(body, std::move(uv), mesh, loader.notes);
-  if (const double extent = longest_side(bounding_box(mesh.rest)); thickness > kThick * extent)
+  const double extent = longest_side(bounding_box(mesh.rest));
+  require_proportion(body["shell"], "thickness", extent);
+  if (thickness > kThick * extent)
     loader.notes.push_back("body '" + body["name"].text() + "': its thickness of " + number_text(thickness) +
                            " m is much for a sheet of " + three_digits(extent) +
                            " m: shells bend by less than a tenth of that (model it by tets)");
@@ -263,7 +272,10 @@ void add_wind(const Table& document, Model& model) {
   const auto field = [formula = VectorField(velocity, ExpressionVariables::position_and_time), place = velocity.place](
                          const Vec3d& x, double time) {
     try {
-      return formula.at(x, time);
+      const Vec3d u = formula.at(x, time);
+      if (norm(u) > kFastest)
+        throw InvalidInput("wind of " + three_digits(norm(u)) + " m/s; drag holds to 1e4 m/s (check the formula)");
+      return u;
     } catch (const InvalidInput& e) {  // possibly long after the scene was read
       throw error_at(place, e.what());
     }

@@ -248,7 +248,7 @@ void add_attach(Schema& s) {
            "k of each vertex, V = k/2 (distance - rest length)^2; default: that of the softer body, Young's modulus "
            "times "
            "the thickness of a sheet or the mean edge of a solid",
-           Units{"N/m"}, kPositive)});
+           Units{"N/m"}, Range{.min = 0, .max = 1e15, .min_open = true})});
   add_section(s, {"attach_points", "points = { ... } in [[attach]]", "The attached vertices."},
               {key("body", kText, "name of the body", kRequired), where_key()});
   Key target = where_key();

@@ -47,7 +47,8 @@ void add_body(Schema& s) {
   add_section(
       s,
       {"shell", "shell = { ... } in a [[body]]",
-       "A sheet, such as cloth: the triangles of `mesh` or `shape`, neo-Hookean in plane stress."},
+       "A sheet, such as cloth: the triangles of `mesh` or `shape` (of solids: their surface, hollow), neo-Hookean in "
+       "plane stress."},
       {key("thickness", kNumber, "thickness", Units{"m"}, kPositive, kRequired),
        key("moment", kNumber, "bending stiffness D; default: E t^3 / (12 (1 - nu^2))", Units{"N m"}, kNotNegative),
        key("bending", kText,
@@ -98,7 +99,7 @@ void add_body(Schema& s) {
        "it. Works with backward_euler and quasi_static."},
       {key("radius", kNumber, "radius of the cross-section", Units{"m"}, kPositive, kRequired),
        key("rest", kText, "curvature at rest", Choices{{"mesh", "straight"}}, Usual{"\"mesh\"", "that of the mesh"}),
-       key("natural_twist", kNumber, "twist at rest", Units{"rad/m"}, Usual{"0.0", "none"}),
+       key("natural_twist", kNumber, "twist at rest", Units{"rad/m"}, Range{-1e9, 1e9}, Usual{"0.0", "none"}),
        key("twist_first", kNumber | kMovingExpression,
            "angle by which the first segment is turned about its axis; function of the time t; default: 0 if both of "
            "its vertices are pinned, else free",

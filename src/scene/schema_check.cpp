@@ -234,13 +234,18 @@ class Checker {
 
   // Returns the keys of the groups that were not chosen: they get no defaults.
   std::vector<std::string> check_alternatives(const Table& table, const std::string& section, const Place& place) {
-    const Alternatives* rule = schema_.alternatives_of(section);
-    if (!rule) return {};
-    std::vector<std::string> all, idle;
-    for (const auto& group : rule->groups) all.push_back(join(group, ", "));
+    std::vector<std::string> idle;
+    for (const Alternatives& rule : schema_.alternatives)
+      if (rule.section == section) check_rule(rule, table, place, idle);
+    return idle;
+  }
+
+  void check_rule(const Alternatives& rule, const Table& table, const Place& place, std::vector<std::string>& idle) {
+    std::vector<std::string> all;
+    for (const auto& group : rule.groups) all.push_back(join(group, ", "));
     const std::vector<std::string>* chosen = nullptr;
     std::string chosen_key;
-    for (const auto& group : rule->groups) {
+    for (const auto& group : rule.groups) {
       for (const std::string& name : group) {
         const Value* value = table.find(name);
         if (!value || chosen == &group) continue;
@@ -253,11 +258,10 @@ class Checker {
         }
       }
     }
-    if (!chosen && rule->required) error(place, section + " needs one of: " + join(all, " | "));
-    if (!chosen && !rule->required) chosen = &rule->groups.front();
-    for (const auto& group : rule->groups)
+    if (!chosen && rule.required) error(place, rule.section + " needs one of: " + join(all, " | "));
+    if (!chosen && !rule.required) chosen = &rule.groups.front();
+    for (const auto& group : rule.groups)
       if (&group != chosen) idle.insert(idle.end(), group.begin(), group.end());
-    return idle;
   }
 
   void complete(Table& table, const std::string& section, const Place& place, const std::vector<std::string>& idle) {

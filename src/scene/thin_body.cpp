@@ -1,5 +1,7 @@
 #include "scene/thin_body.h"
 
+#include "base/formatted.h"
+
 namespace aspic {
 
 void refuse_keys_of_solids(const Value& body, const ThinKind& kind) {
@@ -23,6 +25,15 @@ void refuse_keys_of_solids(const Value& body, const ThinKind& kind) {
   if (const Value* springs = body.find("spring"))
     for (const Value& spring : springs->array())
       if (const Value* edges = spring.find("edges")) refuse(*edges, "spring.edges");
+}
+
+void require_proportion(const Value& thin, const char* key, double extent) {
+  constexpr double kLeast = 1e-12, kMost = 1e3;
+  const Value& size = thin[key];
+  if (size.number() < kLeast * extent || size.number() > kMost * extent)
+    throw error_at(size.place, std::string(key) + " = " + number_text(size.number()) + "; must be from " +
+                                   number_text(kLeast) + " to " + number_text(kMost) + " times the extent of " +
+                                   three_digits(extent) + " m (check the units)");
 }
 
 }  // namespace aspic

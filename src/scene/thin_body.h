@@ -18,6 +18,9 @@ struct ThinKind {
 // Rejects keys of a body that need tets. Throws InvalidInput.
 void refuse_keys_of_solids(const Value& body, const ThinKind& kind);
 
+// Rejects a thickness or radius, the key `key` of `thin`, out of proportion to the extent of the body.
+void require_proportion(const Value& thin, const char* key, double extent);
+
 // Reads the mesh of a body by `read`, and names its file in the results. Throws InvalidInput.
 template <class Read>
 auto thin_mesh_from_file(Value& body, MeshLoader& loader, const Read& read) {

@@ -58,28 +58,46 @@ void scene(std::string_view bytes) {
   const fs::path path = folder_with_meshes() / "scene.toml";
   put_file(path, bytes);
   const Scene built = load_scene(path, small_scenes());
-  require(built.simulation.model().mesh.tet_count() <= kMaxTets, "the scene has at most the maximum number of tets");
+  require(built.simulation.model().mesh.element_count() <= kMaxTets,
+          "the scene has at most the maximum number of elements");
   require(built.steps >= 0, "the number of steps is not negative");
   for (const double q : built.simulation.state().q) require(std::isfinite(q), "positions are finite");
   require_printable(built.notes);
   for (const BodyRange& body : built.simulation.model().bodies) require_printable({body.name});
 }
 
+// Takes the steps of a scene, each until it has polled the token a few times.
+void run_briefly(const fs::path& path) {
+  constexpr int kMaxPolls = 40;
+  Scene built = load_scene(path, small_scenes());
+  require_printable(built.notes);
+  int polls = 0;
+  const StopToken stop([&polls] { return ++polls > kMaxPolls; });
+  for (int i = 0; i < built.steps; ++i) built.simulation.step({}, stop);
+  for (const double q : built.simulation.state().q) require(std::isfinite(q), "positions are finite");
+}
+
 // A box falls onto the surface in the file.
 void obstacle(std::string_view bytes) {
-  constexpr int kMaxPolls = 40;
   const fs::path folder = folder_of_process();
   put_file(folder / "obstacle.obj", bytes);
   put_file(
       folder / "falling.toml",
       "[time]\nduration = 0.02\n[contact]\nfriction = 0.5\n[[body]]\nvelocity = [0, -9, 0]\nshape = { box = { lower = "
       "[0, 0.05, 0], upper = [1, 1, 1], cells = [1, 1, 1] } }\n[[obstacle]]\nmesh = \"obstacle.obj\"\n");
-  Scene built = load_scene(folder / "falling.toml", small_scenes());
-  require_printable(built.notes);
-  int polls = 0;
-  const StopToken stop([&polls] { return ++polls > kMaxPolls; });
-  for (int i = 0; i < built.steps; ++i) built.simulation.step({}, stop);
-  for (const double q : built.simulation.state().q) require(std::isfinite(q), "positions are finite");
+  run_briefly(folder / "falling.toml");
+}
+
+void thin(std::string_view bytes) {
+  const fs::path folder = folder_of_process();
+  put_file(folder / "thin.obj", bytes);
+  const bool is_rod = bytes.find("\nl ") != std::string_view::npos;
+  put_file(
+      folder / "thin.toml",
+      std::string("[time]\nduration = 0.02\n[contact]\nfriction = 0.5\n[[obstacle]]\nplane = { origin = [0, -1, 0] "
+                  "}\n[[body]]\nmesh = \"thin.obj\"\n") +
+          (is_rod ? "rod = { radius = 1e-2 }\n" : "shell = { thickness = 1e-2 }\n"));
+  run_briefly(folder / "thin.toml");
 }
 
 void material(std::string_view bytes) {

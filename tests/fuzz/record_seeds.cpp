@@ -122,6 +122,23 @@ std::vector<Seed> scene_seeds() {
       {"obstacle", "sheet", "v -2 0 -2\nv 2 0 -2\nv 0 0 4\nf 1 2 3\n"},
       {"obstacle", "fan",
        "v 0 0 -2\nv 0 0 2\nv 2 0 0\nv -2 0 0\nv 0 -2 0\nf 1 2 3\nf 1 2 4\nf 1 2 5\nf 1 1 5\nf 1 2 3\n"},
+      {"scene", "sheets",
+       "[wind]\nvelocity = [\"sin(t)\", 0, 0]\n[[attach]]\npoints = { body = \"a\", where = \"y > 0.9\" }\nto = { body "
+       "= \"b\" }\ngap = \"keep\"\n" +
+           with_body("shape = { rectangle = { width = 2, height = 2, size = 1 } }\nshell = { thickness = 1e-2, weave = "
+                     "{ weft = 1e5, shear = 1e4 } }") +
+           "\n[[body]]\nname = \"b\"\nshape = { disc = { radius = 1, size = 1 } }\nshell = { thickness = 1e-2, bending "
+           "= \"mid_edge\" }\ntranslate = [0, 1, 0.1]\n[[body]]\nshape = { tube = { radius = 1, height = 1, size = 1 } "
+           "}\nshell = { thickness = 1e-2, moment = 1e-5, rest = \"flat\" }\ntranslate = [5, 0, 0]\n"},
+      {"scene", "rods",
+       with_body(
+           "shape = { line = { from = [0, 0, 0], to = [1, 0, 0], size = 0.5 } }\nrod = { radius = 1e-2, twist_last "
+           "= \"t\" }") +
+           "\n[[body]]\nshape = { ring = { radius = 1, size = 1 } }\nrod = { radius = 1e-2, rest = \"straight\" }\n"
+           "[[body]]\nshape = { coil = { radius = 1, pitch = 1, turns = 2, size = 1 } }\nrod = { radius = 1e-2, "
+           "natural_twist = 1 }\n"},
+      {"thin", "sheet", "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nv 0 1 0\nf 1 2 3 4\nf 1 2 5\n"},
+      {"thin", "rod", "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nl 1 2 3 4\n"},
       {"values", "one", "young\n1e5\n2e5\n"},
       {"values", "three", "# three\n1, 2, 3\n4; 5; 6\n"},
       {"scene", "fill", with_body("mesh = \"skin.obj\"\nmesh_size = 0.5")},

@@ -35,6 +35,7 @@ std::span<const Target> targets() {
       {"toml", toml},
       {"scene", scene},
       {"obstacle", obstacle},
+      {"thin", thin},
       {"values", values},
       {"expression", expression},
       {"overrides", overrides},

@@ -46,6 +46,7 @@ void motion_table(std::string_view bytes);
 void toml(std::string_view bytes);
 void scene(std::string_view bytes);     // builds the scene, with at most a few hundred tets
 void obstacle(std::string_view bytes);  // OBJ, with a body that falls onto it
+void thin(std::string_view bytes);      // OBJ, the sheet or rod of a scene
 void values(std::string_view bytes);    // a table of numbers per element
 void expression(std::string_view bytes);
 void overrides(std::string_view bytes);  // one per line

@@ -118,6 +118,37 @@ void check_incline(const Subject&, Findings& found) {
                "m/s");
 }
 
+// Share of the free ring of a round cloth on a pedestal that lies in the shadow. Radii are 15 cm and 9 cm.
+double drape_coefficient(double size, const Subject& subject) {
+  constexpr double kCloth = 0.15, kPedestal = 0.09;
+  const Simulation simulation = sheet_at_end(
+      "gravity = [0, 0, -9.81]\n[time]\nstep = 0.1\nduration = 1\n[solver]\ntolerance = 1e-4\n[[body]]\nshape = { "
+      "disc = { radius = 0.15, size = " +
+      sheet_text(size) +
+      " } }\nshell = { thickness = 1e-3, bending = \"mid_edge\", moment = " + sheet_text(1e-5 * subject.stiffness) +
+      " }\nmaterial = { young = 1e6, poisson = 0.3, density = 150 }\nvelocity = [0, 0, \"0.1 * sin(9 * atan2(y, "
+      "x))\"]\n[[body.pin]]\nwhere = \"hypot(x, y) < 0.0901\"\n");
+  const TetMesh& mesh = simulation.model().mesh;
+  std::vector<int> rim;
+  for (int v = 0; v < mesh.vertex_count(); ++v)
+    if (norm(mesh.rest[v]) > kCloth * (1 - 1e-6)) rim.push_back(v);
+  const auto angle = [&](int v) { return std::atan2(mesh.rest[v][1], mesh.rest[v][0]); };
+  std::sort(rim.begin(), rim.end(), [&](int a, int b) { return angle(a) < angle(b); });
+  double shadow = 0;
+  for (size_t i = 0; i < rim.size(); ++i) {
+    const Vec3d a = point(simulation.state().q, rim[i]), b = point(simulation.state().q, rim[(i + 1) % rim.size()]);
+    shadow += (a[0] * b[1] - a[1] * b[0]) / 2;
+  }
+  const auto disc = [](double radius) { return std::numbers::pi * radius * radius; };
+  return (shadow - disc(kPedestal)) / (disc(kCloth) - disc(kPedestal));
+}
+
+void check_drape(const Subject& subject, Findings& found) {
+  const double fine = subject.quick ? 0.643 : drape_coefficient(0.007, {});
+  found.expect("drape coefficient, 721 vertices against 1951", {drape_coefficient(0.0116, subject), fine, 0.02},
+               "two points: wrinkles and the polygon of the rim");
+}
+
 // A sheet that spins and deforms in empty space.
 void check_momentum(const Subject&, Findings& found) {
   const Simulation simulation = sheet_at_end(
@@ -275,6 +306,14 @@ void add_sheet_checks(std::vector<Check>& checks) {
                     check_incline,
                     {},
                     {R"tex(v = (\sin\alpha - \mu \cos\alpha)\, g t)tex"}});
+  checks.push_back({"sheets",
+                    "drape",
+                    "Drape of a round cloth",
+                    "A cloth of 30 cm, 150 g/m^2 and D = 1e-5 N m hangs over a pedestal of 18 cm in nine folds.",
+                    "The same cloth on a finer mesh",
+                    check_drape,
+                    {"Cusick1968"},
+                    {R"tex(DC = \frac{A_{shadow} - \pi r^2}{\pi R^2 - \pi r^2})tex"}});
   checks.push_back({"sheets",
                     "momentum",
                     "A sheet that spins in empty space",
