@@ -7,7 +7,7 @@ void refuse_keys_of_solids(const Value& body, const ThinKind& kind) {
     throw error_at(value.place, key + ": body '" + body["name"].text() + "' has `" + kind.key + "`, and " + key +
                                     " needs a solid (remove one of the two)");
   };
-  std::vector<std::string> keys = {"skin", "mesh_size", "viscoelastic", "fibre", "muscle", "cavity", "force", "grab"};
+  std::vector<std::string> keys = {"skin", "mesh_size", "viscoelastic", "fibre", "muscle", "force", "grab"};
   keys.insert(keys.end(), kind.refused.begin(), kind.refused.end());
   for (const std::string& key : keys)
     if (const Value* value = body.find(key)) refuse(*value, key);
