@@ -161,7 +161,7 @@ TEST(SheetCavity, AirbagInflatesBetweenPlanes) {
   for (int i = 0; i < 10; ++i) {
     report = scene.simulation.step();
     ASSERT_TRUE(is_success(report.status)) << i << to_string(report.status);
-    if (report.contacts > 0) EXPECT_GT(report.min_gap, 0);
+    EXPECT_TRUE(report.contacts == 0 || report.min_gap > 0);
   }
   const auto [volume, pressure] = report.cavities[0];
   EXPECT_GT(volume, 10 * flat);

@@ -255,8 +255,11 @@ void add_attach(Schema& s) {
   target.required = false;
   target.meaning =
       "vertices: only elements, edges and vertices with all corners among them are the target; default: the whole body";
-  add_section(s, {"attach_target", "to = { ... } in [[attach]]", "The body to which the vertices are attached."},
-              {key("body", kText, "name of the body; the same one needs `where`", kRequired), target});
+  add_section(
+      s, {"attach_target", "to = { ... } in [[attach]]", "The body or obstacle to which the vertices are attached."},
+      {key("body", kText, "name of the body; the same one needs `where`", kRequired), target,
+       key("obstacle", kText, "name of an obstacle: the vertices become a pin that follows its motion or recording")});
+  s.alternatives.push_back({"attach_target", {{"body", "where"}, {"obstacle"}}, true});
 }
 
 void add_loads(Schema& s) {
