@@ -135,7 +135,8 @@ TEST(SheetScene, WarpIsStifferThanWeft) {
 TEST(SheetScene, RefusesWhatNeedsASolid) {
   EXPECT_THAT(refusal(kSheet), AllOf(HasSubstr("rectangle"), HasSubstr("add shell")));
   EXPECT_THAT(refusal(kSheet + kShell + "order = 2\n"), HasSubstr("needs a solid"));
-  EXPECT_THAT(refusal(kSheet + kShell + "elastic = false\n"), HasSubstr("needs a solid"));
+  EXPECT_THAT(refusal(kSheet + "elastic = false\nshell = { thickness = 1e-3, bending = \"mid_edge\" }\n"),
+              HasSubstr("elastic = false excludes bending"));
   EXPECT_THAT(refusal(kSheet + kShell + "[[body.force]]\nwhere = \"all\"\nvalue = [1, 0, 0]\n"),
               HasSubstr("needs a solid"));
   EXPECT_THAT(refusal(kSheet + "shell = { thickness = 0 }\n"), HasSubstr("thickness = 0"));
@@ -226,6 +227,17 @@ TEST(SheetScene, StartsOnWhatItTouches) {
       EXPECT_THAT(scene.notes, testing::Contains(HasSubstr("surfaces touch at the start"))) << below << height;
       run_steps(scene, 2);
     }
+}
+
+TEST(SheetScene, InelasticSheetFallsFreely) {
+  Scene scene = load(kSheet + kShell + "elastic = false\nvelocity = [\"y\", 0, 0]\n");
+  run_steps(scene, 5);
+  const State& state = scene.simulation.state();
+  for (size_t i = 0; i < state.q.size(); i += 3) {
+    const Vec3d& X = scene.simulation.model().mesh.rest[i / 3];
+    EXPECT_NEAR(state.qdot[i], X[1], 1e-9);
+    EXPECT_NEAR(state.qdot[i + 1], -9.81 * state.time, 1e-9);
+  }
 }
 
 TEST(SheetScene, DeepOverlapIsRefused) {

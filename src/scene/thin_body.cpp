@@ -12,7 +12,6 @@ void refuse_keys_of_solids(const Value& body, const ThinKind& kind) {
   for (const std::string& key : keys)
     if (const Value* value = body.find(key)) refuse(*value, key);
   if (const Value& order = body["order"]; order.number() != 1) refuse(order, "order = 2");
-  if (const Value& elastic = body["elastic"]; !elastic.boolean()) refuse(elastic, "elastic = false");
   const Value& material = body["material"];
   if (const Value* file = material.find("file")) refuse(*file, "material.file");
   if (const Value& model = material["model"]; model.text() != "neo_hookean")
