@@ -83,8 +83,8 @@ class Touches {
     const ContactPart& part = mesh_.parts[mesh_.part[p]];
     return part.is_hollow ? part.offset : 0;
   }
-  // Returns whether the normal of a point's part says on which side the other part is: that of a solid or an obstacle,
-  // or of the first of two sheets.
+  // Returns whether the normal of a point's part defines the side of the other part: for solids and obstacles, and for
+  // the first of two sheets.
   bool is_reference(int p, int other) const {
     return thin(p) == 0 || (thin(other) > 0 && mesh_.part[p] < mesh_.part[other]);
   }

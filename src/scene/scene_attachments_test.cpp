@@ -172,7 +172,7 @@ TEST(SceneAttachments, VerticesOnObstacleArePinsWithItsMotion) {
 
 TEST(SceneAttachments, RefusesWhatObstaclesCannotDo) {
   EXPECT_THAT(refusal(kFlagOnArm + kToArm, {"attach.to.obstacle=armm"}), HasSubstr("did you mean 'arm'?"));
-  EXPECT_THAT(refusal(kFlagOnArm + kToArm, {"attach.points.body=flagg"}), HasSubstr("did you mean 'flag'?"));
+  EXPECT_THAT(refusal(kFlagOnArm + kToArm, {"attach.points.body=flags"}), HasSubstr("did you mean 'flag'?"));
   EXPECT_THAT(refusal(kFlagOnArm + kToArm + "gap = \"keep\"\n"), HasSubstr("gap is for springs between bodies"));
   EXPECT_THAT(refusal(kFlagOnArm + kToArm, {"obstacle.arm.motion={ rotate = { axis = [0, 1, 0], rate_deg = 90 } }"}),
               HasSubstr("rotate has no center, which body 'flag' needs"));
