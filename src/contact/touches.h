@@ -17,7 +17,9 @@ struct Touch {
   std::array<int, 2> parts;  // ascending
 };
 
-// Returns the touches of features of different parts whose gap is at most kTouching mean edges. `x`: positions of all
+// Returns the touches of features of different parts whose gap is at most kTouching mean edges. Gaps of sheets and rods
+// may be negative by their thickness. A sheet that coincides with another one leaves it on the side of the normals of
+// the first. `x`: positions of all
 // points [m]. All of `by` together leave gaps of at least the reach, or of touching_reach() if that is smaller.
 std::vector<Touch> touches(const ContactMesh& mesh, const ContactLaws& laws, const StencilSearch& search,
                            std::span<const Vec3d> x);

@@ -97,7 +97,7 @@ void grow(Model& model, double scale, const std::vector<double>& start, std::vec
 void inflate(Model& model, std::vector<double>& q) {
   std::optional<std::string> why = overlap(model, q);
   if (!model.contact || !why) return;
-  if (!model.mesh.sheet.empty()) throw InvalidInput(*why + "; sheets have no volume to shrink, so move them apart");
+  if (!model.mesh.sheet.empty()) throw InvalidInput(*why + " (sheets have no volume that could shrink)");
   const std::vector<double> start = q;
   double scale = 1;
   while (why && scale > kSmallest) {

@@ -45,6 +45,14 @@ std::optional<SolverConflict> budget_conflict(const SimulationOptions& options, 
   return SolverConflict{"time_budget", "time_budget = " + std::to_string(budget) + " " + reason};
 }
 
+// What to do about parts that overlap.
+std::string remedy_of_overlap(const ContactMesh& contact, const std::array<int, 2>& parts) {
+  const bool is_thin = contact.parts[parts[0]].is_hollow || contact.parts[parts[1]].is_hollow;
+  return is_thin ? "; move them apart, or let the sheet start larger, as by deform = { scale = 1.1 }, from which it "
+                   "contracts to its rest shape"
+                 : "; move them apart";
+}
+
 // Rejects surfaces that intersect. The message lists the first pairs of parts with a location for each.
 void require_no_intersection(const ContactMesh& contact, std::span<const Vec3d> x) {
   constexpr size_t kMaxListed = 10;
@@ -58,7 +66,8 @@ void require_no_intersection(const ContactMesh& contact, std::span<const Vec3d> 
   }
   throw InvalidInput("surfaces intersect in the initial state: " + text +
                      (found.pairs.size() > kMaxListed ? "; ..." : "") + " (" + std::to_string(found.count) +
-                     (found.is_complete ? "" : " or more") + " pairs of triangles); move them apart");
+                     (found.is_complete ? "" : " or more") + " pairs of triangles)" +
+                     remedy_of_overlap(contact, found.pairs[0].parts));
 }
 
 // Rejects solids inside of other solids. Bodies may start inside of a closed obstacle, which contains them.
@@ -158,7 +167,9 @@ void require_apart(const Model& model, const State& start, const IntegratorFacts
   const ContactSummary closest = model.contact->summary(x, time);
   if (closest.contacts > 0 && (!std::isfinite(model.contact->value(x, at_start)) || closest.min_gap < least_gap))
     throw InvalidInput("surfaces touch or overlap in the initial state: " + contact.parts[closest.parts[0]].name +
-                       " and " + contact.parts[closest.parts[1]].name + "; move them apart");
+                       " and " + contact.parts[closest.parts[1]].name +
+                       (closest.min_gap < 0 ? ", by " + three_digits(-closest.min_gap) + " m" : "") +
+                       remedy_of_overlap(contact, closest.parts));
   require_outside(contact, points);
 }
 

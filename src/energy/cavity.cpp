@@ -15,10 +15,11 @@ class FilledCavity : public Cavity {
       : name_(std::move(name)), swept_(mesh, patch), rest_(cavity_volume(mesh, patch)), content_(std::move(content)) {}
 
   void set_start(Positions x) {
-    start_ = volume(x);
-    if (!(start_ > 0))
-      throw InvalidInput(name_ + ": its faces enclose no cavity at the start, but " + std::to_string(start_) +
+    const double start = volume(x);
+    if (!(start > 0))
+      throw InvalidInput(name_ + ": its faces enclose no cavity at the start, but " + std::to_string(start) +
                          " m^3; select the faces of one inner surface");
+    unit_ = content_.volume > 0 ? content_.volume : start;
   }
 
   std::string_view name() const override { return name_; }
@@ -28,10 +29,10 @@ class FilledCavity : public Cavity {
   }
 
   double value(Positions x, const Context& context) const override {
-    const double v = volume(x), r = v / start_, a = content_.amount(context.time);
+    const double v = volume(x), r = v / unit_, a = content_.amount(context.time);
     if (!(r > 0)) return INFINITY;
-    if (is_liquid()) return content_.modulus * start_ / 2 * (r - a) * (r - a);
-    return content_.modulus * start_ * (r - 1 - a * std::log(r));
+    if (is_liquid()) return content_.modulus * unit_ / 2 * (r - a) * (r - a);
+    return content_.modulus * unit_ * (r - 1 - a * std::log(r));
   }
   void add_gradient(Positions x, const Context& context, double scale, std::span<double> g) const override {
     swept_.add_gradient(x, scale * pressure(volume(x), content_.amount(context.time)), g);
@@ -44,7 +45,7 @@ class FilledCavity : public Cavity {
   }
   void add_dense_rows(Positions x, const Context& context, double scale, DenseRows& rows) const override {
     const double v = volume(x), a = content_.amount(context.time);
-    const double stiffness = content_.modulus * (is_liquid() ? 1 / start_ : a * start_ / (v * v));  // -dp/dv
+    const double stiffness = content_.modulus * (is_liquid() ? 1 / unit_ : a * unit_ / (v * v));  // -dp/dv
     if (stiffness <= 0) return;
     DenseRow& row = rows.emplace_back(DenseRow{std::vector<double>(x.size()), scale * stiffness});
     swept_.add_gradient(x, 1, row.g);
@@ -54,12 +55,12 @@ class FilledCavity : public Cavity {
   bool is_liquid() const { return content_.kind == CavityContent::liquid; }
   double volume(Positions x) const { return rest_ - swept_.value(x); }
   double pressure(double v, double a) const {
-    return content_.modulus * (is_liquid() ? a - v / start_ : a * start_ / v - 1);
+    return content_.modulus * (is_liquid() ? a - v / unit_ : a * unit_ / v - 1);
   }
 
   std::string name_;
   SweptVolume swept_;
-  double rest_, start_ = 0;  // volumes at rest and at the start [m^3]
+  double rest_, unit_ = 0;  // volume at rest, and v_0 [m^3]
   CavityContent content_;
 };
 

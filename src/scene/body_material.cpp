@@ -209,7 +209,7 @@ BodyMaterial material_from(Source& source, const std::string& model, const Place
     if (body.mesh.mids.empty() && !body.mesh.tets.empty()) note_locking(material.parameters, body.name(), notes);
   } else {
     material.model = kModelOfNothing;
-    material.parameters.resize(body.mesh.tets.size());  // all stiffness is zero
+    material.parameters.resize(body.mesh.element_count());  // all stiffness is zero
   }
   return material;
 }

@@ -135,9 +135,13 @@ void add_twist_pins(const PlacedBody& body, std::span<const RodSegment> segments
 }  // namespace
 
 BodyMesh make_rod_mesh(Value& body, MeshLoader& loader) {
-  refuse_keys_of_solids(
-      body,
-      {"rod", "a rod is linear in its strains (remove it)", {"traction", "pressure"}, {"viscosity", "stiffness"}});
+  refuse_keys_of_solids(body, {"rod",
+                               "a rod is linear in its strains (remove it)",
+                               {"traction", "pressure", "cavity"},
+                               {"viscosity", "stiffness"}});
+  if (const Value& elastic = body["elastic"]; !elastic.boolean())
+    throw error_at(elastic.place,
+                   "elastic = false: body '" + body["name"].text() + "' has `rod`, and needs its elasticity");
   const Value* shape = body.find("shape");
   const Place place = (shape ? *shape : body["mesh"]).place;
   TetMesh mesh = shape ? rod_from_shape(*shape, loader) : thin_mesh_from_file(body, loader, read_line_mesh);

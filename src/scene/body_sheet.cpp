@@ -242,8 +242,16 @@ std::unique_ptr<TetElasticity> sheet_elasticity(const PlacedBody& body, const Bo
   const Value& shell = body.scene["shell"];
   const std::vector<MaterialParameters>& parameters = material.parameters;
   SheetMaterial sheet;
+  const bool is_elastic = body.scene["elastic"].boolean();
+  if (const Value& bending = shell["bending"]; !is_elastic && bending.text() != "hinge")
+    throw error_at(bending.place, "elastic = false excludes bending = \"mid_edge\"; remove one of the two");
   sheet.rest = shell["rest"].text() == "flat" ? RestAngles::flat : RestAngles::of_rest;
   for (size_t t = 0; t < parameters.size(); ++t) {
+    if (!is_elastic) {
+      sheet.laws.push_back(IsotropicSheet{0, 0, shell["thickness"].number()});
+      sheet.moment.push_back(0);
+      continue;
+    }
     const double nu = poisson_ratio(parameters[t].lame);
     if (nu < 0)
       throw error_at(body.scene["material"].place, "Poisson's ratio is " + number_text(nu) + " in triangle " +

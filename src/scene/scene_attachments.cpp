@@ -235,7 +235,79 @@ class AttachmentBuilder {
   std::vector<AttachedVertex> attached_;
 };
 
+// `what`: body or obstacle.
+Value& named(Array& list, const Value& name, const std::string& what) {
+  std::vector<std::string> names;
+  for (Value& item : list) {
+    const Value* own = item.find("name");
+    names.push_back(own ? own->text() : what + std::to_string(names.size() + 1));
+    if (names.back() == name.text()) return item;
+  }
+  throw error_at(name.place, what + " = " + toml_string(name.text()) + "; there is no such " + what +
+                                 suggestion(name.text(), names));
+}
+
+// Returns the motion of an obstacle as that of a pin of the body.
+Value pin_motion(const Value& obstacle, const Value& body, const Value& name) {
+  const auto refuse = [&](const std::string& why) {
+    return error_at(name.place, "obstacle = " + toml_string(name.text()) + "; " + why);
+  };
+  if (const Value* recording = obstacle.find("recording")) {
+    for (const char* key : {"translate", "rotate", "scale"}) {
+      const Value *of_obstacle = obstacle.find(key), *of_body = body.find(key);
+      if ((of_obstacle ? inline_toml(*of_obstacle) : "") != (of_body ? inline_toml(*of_body) : ""))
+        throw refuse("its recording moves it, and `" + std::string(key) + "` of it and of body '" +
+                     body["name"].text() + "' differ; place both alike, and model the body where it is attached");
+    }
+    Table table = recording->table();
+    table.set("mesh", obstacle["mesh"]);
+    Table motion;
+    motion.set("recording", {table, recording->place});
+    return {motion, recording->place};
+  }
+  const Value& motion = obstacle["motion"];
+  const Value* spin = motion.is_table() ? motion.find("rotate") : nullptr;
+  if (spin && !spin->find("center"))
+    throw error_at(spin->place, "rotate has no center, which body '" + body["name"].text() +
+                                    "' needs to follow; set center to the point about which the obstacle turns");
+  return motion;
+}
+
 }  // namespace
+
+void pin_to_obstacles(Table& document) {
+  Value* attached = document.find("attach");
+  if (!attached) return;
+  Array others;
+  for (Value& table : attached->array()) {
+    const Value* name = table["to"].find("obstacle");
+    if (!name) {
+      others.push_back(table);
+      continue;
+    }
+    for (const char* key : {"distance", "gap", "stiffness"})
+      if (is_given(table.table(), key))
+        throw error_at(table[key].place, std::string(key) +
+                                             " is for springs between bodies; vertices attached to an "
+                                             "obstacle follow it exactly (remove it)");
+    Array none;
+    Value* obstacles = document.find("obstacle");
+    const Value& obstacle = named(obstacles ? obstacles->array() : none, *name, "obstacle");
+    const Value& points = table["points"];
+    Value& body = named(document.find("body")->array(), points["body"], "body");
+    Table pin;
+    pin.set("name", {"attach" + std::to_string(&table - attached->array().data() + 1), table.place});
+    pin.set("where", points["where"]);
+    pin.set("motion", pin_motion(obstacle, body, *name));
+    pin.set("axes", {std::string("xyz"), {}});
+    if (!body.find("pin")) body.table().set("pin", {Array{}, table.place});
+    body.table().find("pin")->array().push_back({pin, table.place});
+  }
+  if (others.empty())
+    erase(document, "attach");
+  else
+    attached->array() = others;
+}
 
 void add_attachments(Table& document, const std::vector<PlacedBody>& bodies, Model& model,
                      std::vector<std::string>& notes) {

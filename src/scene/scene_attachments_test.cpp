@@ -151,5 +151,35 @@ TEST(SceneAttachments, InelasticBodiesNeedStiffness) {
   EXPECT_EQ(refusal(cubes + "stiffness = 5\n"), "");
 }
 
+const std::string kSpin = "motion = { rotate = { axis = [0, 1, 0], rate_deg = 90, center = [0, 0, 0] } }\n";
+const std::string kFlagOnArm =
+    "[contact]\n[[obstacle]]\nname = \"arm\"\nshape = { box = { lower = [-0.1, 0, -0.1], upper = [0.1, 0.1, 0.1], "
+    "cells = [2, 1, 2] } "
+    "}\n" +
+    kSpin + attached_sheet("flag", {{0.26, 0, 0}});
+const std::string kToArm =
+    "[[attach]]\npoints = { body = \"flag\", where = \"x < 0.12\" }\nto = { obstacle = \"arm\" }\n";
+
+TEST(SceneAttachments, VerticesOnObstacleArePinsWithItsMotion) {
+  Scene attached = load(kFlagOnArm + kToArm),
+        pinned = load(kFlagOnArm + "[[body.pin]]\nwhere = \"x < 0.12\"\n" + kSpin);
+  Scene resolved = load(attached.resolved);
+  for (Scene* scene : {&attached, &pinned, &resolved})
+    for (int i = 0; i < 3; ++i) ASSERT_TRUE(is_success(scene->simulation.step().status));
+  EXPECT_EQ(attached.simulation.state().q, pinned.simulation.state().q);
+  EXPECT_EQ(attached.simulation.state().q, resolved.simulation.state().q);
+}
+
+TEST(SceneAttachments, RefusesWhatObstaclesCannotDo) {
+  EXPECT_THAT(refusal(kFlagOnArm + kToArm, {"attach.to.obstacle=armm"}), HasSubstr("did you mean 'arm'?"));
+  EXPECT_THAT(refusal(kFlagOnArm + kToArm, {"attach.points.body=flags"}), HasSubstr("did you mean 'flag'?"));
+  EXPECT_THAT(refusal(kFlagOnArm + kToArm + "gap = \"keep\"\n"), HasSubstr("gap is for springs between bodies"));
+  EXPECT_THAT(refusal(kFlagOnArm + kToArm, {"obstacle.arm.motion={ rotate = { axis = [0, 1, 0], rate_deg = 90 } }"}),
+              HasSubstr("rotate has no center, which body 'flag' needs"));
+  EXPECT_THAT(refusal(kFlagOnArm + "[[attach]]\npoints = { body = \"flag\", where = \"all\" }\nto = { obstacle = "
+                                   "\"arm\", where = \"all\" }\n"),
+              HasSubstr("excludes where"));
+}
+
 }  // namespace
 }  // namespace aspic

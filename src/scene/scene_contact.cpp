@@ -334,8 +334,9 @@ void note_touching(const std::set<std::array<int, 2>>& pairs, const Model& model
   for (const auto& pair : pairs)
     if (listed++ < kMaxListed) names += (names.empty() ? "" : "; ") + model.contact->mesh().pair_name(pair);
   if (pairs.size() > kMaxListed) names += "; and " + std::to_string(pairs.size() - kMaxListed) + " other pairs";
-  loader.notes.push_back("surfaces touch at the start: " + names +
-                         "; the touching vertices are moved into their bodies by the distance at which contact begins");
+  loader.notes.push_back(
+      "surfaces touch at the start: " + names +
+      "; the touching vertices are moved into their solids, or off with their sheet, to where contact begins");
 }
 
 }  // namespace aspic

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "material/registry.h"
 #include "scene/overrides.h"
+#include "scene/scene_attachments.h"
 #include "scene/schema.h"
 #include "scene/toml_reader.h"
 #include "scene/value.h"
@@ -187,6 +188,7 @@ void complete_scene(Table& document) {
     throw error_at(list.place, std::to_string(bodies.size()) + " bodies; at most " + std::to_string(kMaxBodies) +
                                    " are supported (combine similar bodies in one mesh)");
   name_tables(bodies, body_name);
+  pin_to_obstacles(document);
   for (Value& body : bodies) {
     complete_material(*body.table().find("material"));
     if (const Value* muscles = body.find("muscle"))

@@ -255,8 +255,11 @@ void add_attach(Schema& s) {
   target.required = false;
   target.meaning =
       "vertices: only elements, edges and vertices with all corners among them are the target; default: the whole body";
-  add_section(s, {"attach_target", "to = { ... } in [[attach]]", "The body to which the vertices are attached."},
-              {key("body", kText, "name of the body; the same one needs `where`", kRequired), target});
+  add_section(
+      s, {"attach_target", "to = { ... } in [[attach]]", "The body or obstacle to which the vertices are attached."},
+      {key("body", kText, "name of the body; the same one needs `where`", kRequired), target,
+       key("obstacle", kText, "name of an obstacle: the vertices become a pin that follows its motion or recording")});
+  s.alternatives.push_back({"attach_target", {{"body", "where"}, {"obstacle"}}, true});
 }
 
 void add_loads(Schema& s) {
@@ -280,19 +283,24 @@ void add_loads(Schema& s) {
 
   Key inside = where_key();
   inside.required = false;
-  inside.meaning = "faces of an inner surface; default: the only one";
+  inside.meaning = "faces of an inner surface, or of a closed sheet; default: the only one";
   add_section(
-      s, {"cavity", "[[body.cavity]]", "Gas or liquid in the volume that an inner surface encloses."},
+      s,
+      {"cavity", "[[body.cavity]]",
+       "Gas or liquid in the volume that an inner surface of a solid, or a closed sheet encloses."},
       {inside,
        key("gas", kNumber | kMovingExpression,
-           "amount of gas relative to the start; function of the time t. At a constant temperature its pressure is "
-           "pressure * gas / (volume / volume at the start)"),
-       key("pressure", kNumber, "pressure of the gas at the start, equal to that outside", Units{"Pa"}, kPositive,
-           Usual{"101325.0", "air"}),
-       key("liquid", kNumber | kMovingExpression,
-           "volume of liquid relative to the cavity at the start; function of the time t"),
-       key("bulk_modulus", kNumber, "bulk modulus of the liquid; default: 1000 times Young's modulus of the body",
-           Units{"Pa"}, kPositive)});
+           "amount of gas relative to `volume` at `pressure`; function of the time t. At a constant temperature it "
+           "presses with pressure * gas * volume / (present volume)"),
+       key("pressure", kNumber, "pressure outside", Units{"Pa"}, kPositive, Usual{"101325.0", "air"}),
+       key("liquid", kNumber | kMovingExpression, "volume of liquid relative to `volume`; function of the time t"),
+       key("bulk_modulus", kNumber,
+           "bulk modulus of the liquid; default: 1000 times Young's modulus of the body, of a sheet times its "
+           "thickness "
+           "over its extent",
+           Units{"Pa"}, kPositive),
+       key("volume", kNumber, "reference of the amounts; default: the enclosed volume at the start", Units{"m^3"},
+           kPositive)});
   s.alternatives.push_back({"cavity", {{"gas", "pressure"}, {"liquid", "bulk_modulus"}}, true});
 
   s.sections.push_back({"force", "[[body.force]]", "A dead load: force per rest volume."});

@@ -138,7 +138,8 @@ TEST(SheetScene, WarpIsStifferThanWeft) {
 TEST(SheetScene, RefusesWhatNeedsASolid) {
   EXPECT_THAT(refusal(kSheet), AllOf(HasSubstr("rectangle"), HasSubstr("add shell")));
   EXPECT_THAT(refusal(kSheet + kShell + "order = 2\n"), HasSubstr("needs a solid"));
-  EXPECT_THAT(refusal(kSheet + kShell + "elastic = false\n"), HasSubstr("needs a solid"));
+  EXPECT_THAT(refusal(kSheet + "elastic = false\nshell = { thickness = 1e-3, bending = \"mid_edge\" }\n"),
+              HasSubstr("elastic = false excludes bending"));
   EXPECT_THAT(refusal(kSheet + kShell + "[[body.force]]\nwhere = \"all\"\nvalue = [1, 0, 0]\n"),
               HasSubstr("needs a solid"));
   EXPECT_THAT(refusal(kSheet + "shell = { thickness = 0 }\n"), HasSubstr("thickness = 0"));
@@ -211,6 +212,45 @@ TEST(SheetScene, ClosedSheetIsHollow) {
   const std::string ball = "[contact]\n[[body]]\nname = \"skin\"\nshape = { sphere = { radius = 0.2, size = 0.1 } }\n" +
                            kShell + "[[body]]\nname = \"core\"\nshape = { sphere = { radius = 0.1, size = 0.1 } }\n";
   EXPECT_EQ(refusal(ball), "");
+}
+
+// Sheets that lie exactly on another surface, or closer than half their thickness, leave it before the first step.
+TEST(SheetScene, StartsOnWhatItTouches) {
+  const std::string box = "lower = [-0.5, -0.5, -0.1], upper = [0.5, 0.5, 0], cells = [2, 2, 1]";
+  const std::string second =
+      "[[body]]\nname = \"second\"\nshape = { rectangle = { width = 0.4, height = 0.4, size = 0.08 } }\n" + kShell;
+  for (const std::string& below :
+       {std::string("[[obstacle]]\nplane = { normal = [0, 0, 1] }\n"),
+        "[[obstacle]]\nshape = { box = { " + box + " } }\n",
+        "[[body]]\nname = \"block\"\nshape = { box = { " + box + " } }\npin = { where = \"all\" }\n",
+        std::string("[[obstacle]]\nsphere = { center = [0, 0, -0.2], radius = 0.2 }\n"), second})
+    for (const char* height : {"0", "0.0003", "-0.0002"}) {
+      Scene scene = load("gravity = [0, 0, -9.81]\n[contact]\n" + kSheet + kShell + "translate = [0, 0, " + height +
+                         "]\n" + below);
+      EXPECT_THAT(scene.notes, testing::Contains(HasSubstr("surfaces touch at the start"))) << below << height;
+      run_steps(scene, 2);
+    }
+}
+
+TEST(SheetScene, InelasticSheetFallsFreely) {
+  Scene scene = load(kSheet + kShell + "elastic = false\nvelocity = [\"y\", 0, 0]\n");
+  run_steps(scene, 5);
+  const State& state = scene.simulation.state();
+  for (size_t i = 0; i < state.q.size(); i += 3) {
+    const Vec3d& X = scene.simulation.model().mesh.rest[i / 3];
+    EXPECT_NEAR(state.qdot[i], X[1], 1e-9);
+    EXPECT_NEAR(state.qdot[i + 1], -9.81 * state.time, 1e-9);
+  }
+}
+
+TEST(SheetScene, DeepOverlapIsRefused) {
+  const std::string ball =
+      "[contact]\nstart = \"inflate\"\n[[obstacle]]\nname = \"ball\"\nsphere = { center = [0, 0, 0], radius = 0.1 }\n";
+  const std::string shirt =
+      "[[body]]\nname = \"shirt\"\nshape = { tube = { radius = 0.09, height = 0.1, size = 0.03 } }\n" + kShell;
+  EXPECT_THAT(refusal(ball + shirt), AllOf(HasSubstr("ball and shirt, by 0.0"), HasSubstr("deform = { scale = 1.1 }"),
+                                           HasSubstr("no volume")));
+  EXPECT_EQ(refusal(ball + shirt + "deform = { scale = [1.2, 1.2, 1] }\n"), "");
 }
 
 TEST(SheetScene, CollapsedStartIsRefused) {

@@ -69,6 +69,27 @@ TEST(SurfaceMotion, PinsMoveLinearlyBetweenSamples) {
   EXPECT_LT(distance(pin.motion(X, 0.025), X + Vec3d{{0.25, 0.5, 1}}), kSingle);
 }
 
+TEST(SurfaceMotion, AttachedVerticesFollowARecordedObstacle) {
+  const TestFolder folder;
+  const Moved frames = {{}, turned(0.5, {{0.1, 0, 0.2}})};
+  record(folder, frames);
+  TriMesh band = cube_surface();
+  for (Vec3d& X : band.vertices) X = X + 0.2 * (X - Vec3d{{0.5, 0.5, 0.5}});
+  write_mesh(folder / "band.ply", band);
+  const auto scene = [&](const std::string& placement) {
+    return folder.write("s.toml",
+                        "[[obstacle]]\nname = \"arm\"\nmesh = \"rest.ply\"\nrecording = { file = \"moving.pc2\", fps = "
+                        "10 }\n[[body]]\nname = \"band\"\nmesh = \"band.ply\"\nshell = { thickness = 1e-3 }\n" +
+                            placement +
+                            "[[attach]]\npoints = { body = \"band\", where = \"all\" }\nto = { obstacle = \"arm\" }\n");
+  };
+  const Scene follows = load_scene(scene(""));
+  const Model& model = follows.simulation.model();
+  for (const Vec3d& X : model.mesh.rest) EXPECT_LT(distance(model.pins[0].motion(X, 0.1), frames[1](X)), kSingle);
+  EXPECT_THAT(refusal_of(scene("translate = [0.01, 0, 0]\n")),
+              AllOf(HasSubstr("s.toml:12:"), HasSubstr("`translate` of it and of body 'band' differ")));
+}
+
 TEST(SurfaceMotion, RecordingIsPlacedWithBody) {
   const TestFolder folder;
   const AffineMap moved = turned(0.7, {{0.1, 0.2, 0.3}});

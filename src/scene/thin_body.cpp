@@ -9,12 +9,11 @@ void refuse_keys_of_solids(const Value& body, const ThinKind& kind) {
     throw error_at(value.place, key + ": body '" + body["name"].text() + "' has `" + kind.key + "`, and " + key +
                                     " needs a solid (remove one of the two)");
   };
-  std::vector<std::string> keys = {"skin", "mesh_size", "viscoelastic", "fibre", "muscle", "cavity", "force", "grab"};
+  std::vector<std::string> keys = {"skin", "mesh_size", "viscoelastic", "fibre", "muscle", "force", "grab"};
   keys.insert(keys.end(), kind.refused.begin(), kind.refused.end());
   for (const std::string& key : keys)
     if (const Value* value = body.find(key)) refuse(*value, key);
   if (const Value& order = body["order"]; order.number() != 1) refuse(order, "order = 2");
-  if (const Value& elastic = body["elastic"]; !elastic.boolean()) refuse(elastic, "elastic = false");
   const Value& material = body["material"];
   if (const Value* file = material.find("file")) refuse(*file, "material.file");
   if (const Value& model = material["model"]; model.text() != "neo_hookean")

@@ -51,10 +51,11 @@ void check_balloon(const Subject& subject, Findings& found) {
     (slope < p * R * s * s ? low : high) = s;
   }
   const double size = subject.quick ? 0.02 : 0.01;
-  const Simulation simulation = sheet_at_end(
+  const std::string balloon =
       "gravity = [0, 0, 0]\n[time]\nstep = 0.1\nduration = 2\n[[body]]\nshape = { sphere = { radius = 0.1, size = " +
       sheet_text(size) + " } }\nshell = { thickness = 1e-3, moment = 0 }\nmaterial = { young = " + sheet_text(E) +
-      ", poisson = 0.3, density = 1000 }\n[[body.pressure]]\nwhere = \"all\"\nvalue = -2000\n");
+      ", poisson = 0.3, density = 1000 }\n";
+  const Simulation simulation = sheet_at_end(balloon + "[[body.pressure]]\nwhere = \"all\"\nvalue = -2000\n");
   const TetMesh& mesh = simulation.model().mesh;
   double stretch = 0;
   for (int v = 0; v < mesh.vertex_count(); ++v) {
@@ -62,6 +63,10 @@ void check_balloon(const Subject& subject, Findings& found) {
     stretch += norm(x) / norm(mesh.rest[v]) / mesh.vertex_count();
   }
   found.expect("stretch of the balloon", {stretch, low, 0.2 * size / R * (low - 1) + 1e-6}, "the facets of the sphere");
+  const Simulation filled = sheet_at_end(balloon + "[[body.cavity]]\nliquid = " + sheet_text(low * low * low) + "\n");
+  const CavityState inside = filled.start_report().cavities[0];
+  found.expect("pressure of the liquid that fills it", {inside.pressure, p, 0.2 * size / R * p},
+               "the facets of the sphere", "Pa");
 }
 
 // A strip hangs under its weight from a clamped edge: w L^3 / (E I) = 10.
@@ -278,7 +283,7 @@ void add_sheet_checks(std::vector<Check>& checks) {
       {"sheets",
        "balloon",
        "A balloon under pressure",
-       "A sphere of neo-Hookean sheet without bending under a follower pressure.",
+       "A sphere of neo-Hookean sheet without bending under a follower pressure, and filled with a given volume.",
        "Equilibrium of a sphere",
        check_balloon,
        {},
