@@ -11,6 +11,7 @@
 #include "contact/contact_reach.h"
 #include "contact/overlaps.h"
 #include "math/vectors.h"
+#include "mesh/surface_locator.h"
 
 namespace aspic {
 namespace {
@@ -45,6 +46,25 @@ std::optional<SolverConflict> budget_conflict(const SimulationOptions& options, 
   return SolverConflict{"time_budget", "time_budget = " + std::to_string(budget) + " " + reason};
 }
 
+// Returns the largest distance of points of a sheet behind the surface of a solid [m]; 0 for two sheets or two solids.
+double depth_of_sheet(const ContactMesh& contact, std::span<const Vec3d> x, const std::array<int, 2>& parts) {
+  const bool is_first = contact.parts[parts[0]].is_hollow;
+  if (is_first == contact.parts[parts[1]].is_hollow) return 0;
+  const int sheet = parts[is_first ? 0 : 1], solid = parts[is_first ? 1 : 0];
+  std::vector<Triangle> surface;
+  for (const Triangle& t : contact.triangles)
+    if (contact.part[t[0]] == solid) surface.push_back(t);
+  const SurfaceLocator locator(x, surface);
+  double depth = 0;
+  for (int p = 0; p < contact.point_count(); ++p) {
+    if (contact.part[p] != sheet) continue;
+    const ClosestPoint closest = locator.nearest(x[p]);
+    const auto& [a, b, c] = surface[closest.triangle];
+    if (dot(cross(x[b] - x[a], x[c] - x[a]), x[p] - closest.position) < 0) depth = std::max(depth, closest.distance);
+  }
+  return depth;
+}
+
 // What to do about parts that overlap.
 std::string remedy_of_overlap(const ContactMesh& contact, const std::array<int, 2>& parts) {
   const bool is_thin = contact.parts[parts[0]].is_hollow || contact.parts[parts[1]].is_hollow;
@@ -63,6 +83,8 @@ void require_no_intersection(const ContactMesh& contact, std::span<const Vec3d> 
     const auto& [parts, place] = found.pairs[i];
     text += (i == 0 ? "" : "; ") + contact.parts[parts[0]].name + " and " + contact.parts[parts[1]].name + " near (" +
             coordinates(place) + ") m";
+    if (const double depth = depth_of_sheet(contact, x, parts); depth > 0)
+      text += ", up to " + three_digits(depth) + " m deep";
   }
   throw InvalidInput("surfaces intersect in the initial state: " + text +
                      (found.pairs.size() > kMaxListed ? "; ..." : "") + " (" + std::to_string(found.count) +

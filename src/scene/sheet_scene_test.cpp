@@ -250,6 +250,10 @@ TEST(SheetScene, DeepOverlapIsRefused) {
       "[[body]]\nname = \"shirt\"\nshape = { tube = { radius = 0.09, height = 0.1, size = 0.03 } }\n" + kShell;
   EXPECT_THAT(refusal(ball + shirt), AllOf(HasSubstr("ball and shirt, by 0.0"), HasSubstr("deform = { scale = 1.1 }"),
                                            HasSubstr("no volume")));
+  const std::string block =
+      "[contact]\n[[obstacle]]\nname = \"block\"\nshape = { box = { lower = [-0.1, -0.1, -1], upper = [0.1, "
+      "0.1, 1], cells = [1, 1, 1] } }\n";
+  EXPECT_THAT(refusal(block + shirt + "translate = [0.15, 0, 0]\n"), HasSubstr(" m, up to 0.04 m deep ("));
   EXPECT_EQ(refusal(ball + shirt + "deform = { scale = [1.2, 1.2, 1] }\n"), "");
 }
 
