@@ -4,15 +4,15 @@
 
 namespace aspic {
 
-FitState::FitState(const DataSet& data, const FitPlan& plan, const FitMemory& memory, const FitCallbacks& callbacks)
-    : data(data),
-      memory(memory),
-      callbacks(callbacks),
-      jobs(memory.jobs ? *memory.jobs : all_jobs),
-      plan(completed(plan, data.experiment)),
-      simulated(data.experiment, this->plan) {
-  if (!memory.folder.empty()) fingerprint = fingerprint_of(data.experiment) + "\n" + text_of(this->plan);
-  outcome.plan = this->plan;
+FitState::FitState(const DataSet& given, const FitPlan& wanted, const FitMemory& kept, const FitCallbacks& reports)
+    : data(given),
+      memory(kept),
+      callbacks(reports),
+      jobs(kept.jobs ? *kept.jobs : all_jobs),
+      plan(completed(wanted, given.experiment)),
+      simulated(given.experiment, plan) {
+  if (!memory.folder.empty()) fingerprint = fingerprint_of(data.experiment) + "\n" + text_of(plan);
+  outcome.plan = plan;
   outcome.simulated_tets = simulated.mesh().tet_count();
 }
 

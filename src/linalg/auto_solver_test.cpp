@@ -158,7 +158,8 @@ TEST(AutoSolver, CountsFailedAttempts) {
   const std::vector<double> b = random_vector(3 * H.rows(), 2);
   for (const double tolerance : {1e-5, 1e-13}) {
     const SolveReport first = solved(ConjugateGradient(300), H.values, b, tolerance);
-    const SolveReport second = solved(ConjugateGradient(std::make_unique<Multigrid>(), kCyclesPerFactorization), H.values, b, tolerance);
+    const SolveReport second =
+        solved(ConjugateGradient(std::make_unique<Multigrid>(), kCyclesPerFactorization), H.values, b, tolerance);
     const SolveReport third = second.ok ? SolveReport() : solved(Cholesky(), H.values, b, tolerance);
     AutoSolver solver;
     const SolveReport total = solved(solver, H.values, b, tolerance);
