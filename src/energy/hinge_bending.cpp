@@ -317,7 +317,7 @@ HingeList list_of_hinges(std::span<const Vec3d> rest, std::span<const Triangle> 
   for (auto first = sides.begin(); first != sides.end();) {
     const auto last =
         std::find_if(first, sides.end(), [&](const Side& side) { return side.a != first->a || side.b != first->b; });
-    list.add_edge({first, last}, rest_angles);
+    list.add_edge({&*first, static_cast<size_t>(last - first)}, rest_angles);
     first = last;
   }
   return list;
