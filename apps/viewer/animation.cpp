@@ -20,7 +20,7 @@ namespace aspic::viewer {
 namespace {
 
 constexpr double kMaxPerSecond = 120;  // maximum number of frames per second
-constexpr double kMaxBytes = 36e6;     // maximum estimated size of a file
+constexpr double kLargestFile = 36e6;  // maximum estimated size of a file
 constexpr int kMaxMorphTargets = 240;  // more targets are slow in all programs that read them
 
 struct Format {
@@ -56,7 +56,7 @@ Motion motion_of(const ShownSide& shown, const Format& format) {
   const double begin = snapshots.front().state.time, duration = snapshots.back().state.time - begin;
   if (snapshots.size() < 2 || !(duration > 0)) throw InvalidInput("nothing has moved yet; play first, then export");
   const double per_frame = format.bytes_per_vertex * shown.surface.vertex_count();
-  const double most = std::min<double>(format.most_frames, std::floor(kMaxBytes / std::max(per_frame, 1.0)));
+  const double most = std::min<double>(format.most_frames, std::floor(kLargestFile / std::max(per_frame, 1.0)));
   if (most < 2)
     throw InvalidInput(
         fmt::format("a surface of {} vertices is too large for this; save the scene and run it with "

@@ -193,7 +193,8 @@ TEST(HingeBending, EqualBitsForAnyThreadCount) {
 }
 
 std::unique_ptr<Energy> creases_of(const SheetGrid& grid, double yield) {
-  const TetMesh mesh{.rest = grid.rest, .tets = {}, .region = {}, .sheet = grid.triangles};
+  TetMesh mesh{.rest = grid.rest, .tets = {}, .region = {}, .sheet = grid.triangles};
+  mesh.thickness.assign(grid.triangles.size(), 1e-3);
   return make_creases("creases", {mesh, 0, std::vector<double>(grid.triangles.size(), 0.1), RestAngles::flat, yield});
 }
 

@@ -92,9 +92,8 @@ def main():
     parser.add_argument("scene", nargs="*", help=", ".join(known))
     parser.add_argument("--runs", type=int, default=1, help="runs of each, of which the fastest counts")
     arguments = parser.parse_args()
-    unknown = set(arguments.scene) - set(known)
-    if unknown:
-        parser.error(f"unknown scene {', '.join(unknown)}")
+    if misspelt := set(arguments.scene) - set(known):
+        parser.error(f"no scene {', '.join(misspelt)}")
     print(f"{'scene':18}{'ratio':>6}", *(f"{solver:>12}" for solver in SOLVERS))
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "scene.toml"
