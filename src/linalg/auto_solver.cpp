@@ -16,7 +16,7 @@ namespace {
 // the bodies of tests/bench/auto.py. A factorization of f flops per row costs f / kFlopsPerIteration + kSmallFronts
 // sqrt(f): small fronts run slower. Multigrid costs kCycleCost per cycle, and kMultigridCost for two digits.
 constexpr double kFlopsPerIteration = 1500, kSmallFronts = 0.55;
-constexpr double kFew = 6e7;  // flops, a few milliseconds, below which the more robust factorization is preferred
+constexpr double kFew = 3e7;  // flops, a millisecond, below which the more robust factorization is preferred
 constexpr double kCycleCost = 5, kMultigridCost = 40;
 constexpr double kLoose = 1.5;          // inexact solves are followed by more Newton iterations than exact ones
 constexpr double kLifted = 6;           // the same with stiff rows, whose pressures cost iterations, too
