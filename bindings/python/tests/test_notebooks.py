@@ -25,7 +25,10 @@ def test_notebook_runs(path, tmp_path, monkeypatch):
     monkeypatch.setenv("MPLBACKEND", "module://matplotlib_inline.backend_inline")
     monkeypatch.setenv("PYTHONPATH", str(PACKAGE))
     notebook = nbformat.read(path, as_version=4)
-    nbclient.NotebookClient(notebook, timeout=600, resources={"metadata": {"path": tmp_path}}).execute()
+    folder = tmp_path / "docs/python"
+    folder.mkdir(parents=True)
+    (tmp_path / "scenes").symlink_to(ROOT / "scenes")
+    nbclient.NotebookClient(notebook, timeout=600, resources={"metadata": {"path": folder}}).execute()
     if path.stem == "5_contact":
         assert_page_keeps_the_player(notebook)
 
