@@ -24,10 +24,10 @@ namespace fs = std::filesystem;
 
 struct RenderArguments {
   fs::path run, out;
-  std::string size = "1280x720", view = "isometric", color;
+  std::string size = "1280x720", view = "isometric", color, preset;
   double fps = 30, speed = 1;
-  int step = -1;
-  bool wires = true, dark = false, every_frame = false;
+  int step = -1, samples = 0;
+  bool wires = true, dark = false, transparent = false, every_frame = false;
 };
 
 constexpr size_t kMaxBytes = 100'000'000;  // limit of the page, for browsers
@@ -37,8 +37,13 @@ viewer::RenderOptions render_options(const RenderArguments& arguments) {
     throw InvalidInput("--fps and --speed must be finite numbers");
   viewer::RenderOptions options{.view = arguments.view,
                                 .color = arguments.color,
+                                .preset = arguments.preset,
                                 .wires = arguments.wires,
-                                .dark = arguments.dark,
+                                .dark = arguments.dark || arguments.preset == "talk",
+                                .transparent = arguments.transparent,
+                                .samples = arguments.samples > 0 ? arguments.samples
+                                           : arguments.step < 0  ? 4
+                                                                 : 32,
                                 .step = arguments.step};
   const char* end = arguments.size.data() + arguments.size.size();
   const auto [x, width_error] = from_chars(arguments.size.data(), end, options.width);
@@ -103,6 +108,8 @@ std::unique_ptr<Output> open_output(const RenderArguments& arguments, const view
   const fs::path& out = arguments.out;
   if (is_picture(out)) return std::make_unique<OnePicture>(out);
   if (viewer::VideoFile::is_video(out)) {
+    if (options.transparent && out.extension() == ".mp4")
+      throw InvalidInput(out.string() + ": MP4 has no transparency; write .webm, .gif or a folder of pictures");
     if (options.width % 2 || options.height % 2)
       throw InvalidInput(fmt::format("--size {}: a video needs even width and height", arguments.size));
     return std::make_unique<Video>(out, arguments.fps);
@@ -154,7 +161,7 @@ Examples:
   aspic render out/bunny -o bunny.mp4                          in real time; needs ffmpeg
   aspic render out/bunny -o slow.webm --speed 0.25 --color von_mises
   aspic render out/bunny -o frames/ --size 1920x1080           frame_000001.png, ... of every frame of the run
-  aspic render out/bunny -o bunny.png --step 40 --view front --dark
+  aspic render out/bunny -o bunny.png --step 40 --view front --preset paper
 
 Chromium draws them with the page of aspic view and aspic report, on the CPU if there is no graphics card.)");
   command->add_option("RUN", arguments->run, "Directory of a run")->required();
@@ -171,9 +178,21 @@ Chromium draws them with the page of aspic view and aspic report, on the CPU if 
   command->add_flag("--every-frame", arguments->every_frame, "Video with one picture per frame of the run");
   command->add_option("--step", arguments->step, "Draw one picture, of the frame nearest to this step")
       ->check(CLI::Range(0, 1000000000));
-  command->add_flag("--wires,!--no-wires", arguments->wires, "Draw edges of the mesh, on by default");
+  command
+      ->add_option("--preset", arguments->preset,
+                   "paper: white, orthographic, with a scale bar; talk: dark, with large text; both without wires")
+      ->check(CLI::IsMember({"paper", "talk"}));
+  command->add_flag("--wires,!--no-wires", arguments->wires, "Draw edges of the mesh, on without a preset");
   command->add_flag("--dark", arguments->dark, "Use a dark background");
-  command->callback([arguments, &action] { action = [arguments] { return render(*arguments); }; });
+  command->add_flag("--transparent", arguments->transparent, "Use no background");
+  command
+      ->add_option("--samples", arguments->samples,
+                   "Directions of light per picture, 32 for one picture, 4 for more by default; 1: sharp shadows")
+      ->check(CLI::Range(1, 256));
+  command->callback([arguments, command, &action] {
+    if (command->count("--wires") == 0) arguments->wires = arguments->preset.empty();
+    action = [arguments] { return render(*arguments); };
+  });
 }
 
 }  // namespace aspic::cli

@@ -29,17 +29,32 @@ std::string query(const RenderOptions& options) {
   std::string text = fmt::format("&render=1&width={}&height={}&view={}&color={}&wires={}&dark={}&every={}",
                                  options.width, options.height, percent_coded(options.view),
                                  percent_coded(options.color), int{options.wires}, int{options.dark}, options.every);
+  text +=
+      fmt::format("&preset={}&transparent={}&samples={}", options.preset, int{options.transparent}, options.samples);
   if (options.step >= 0) text += fmt::format("&step={}", options.step);
   return text;
 }
 
+// Players read high-definition video by BT.709, ffmpeg writes BT.601 by default.
+constexpr const char* kColors = "scale=out_color_matrix=bt709:out_range=tv";
+
 // A GIF has one palette of 256 colors for all pictures, and at most 50 pictures per second.
 std::vector<std::string> coder_of(const std::string& extension) {
   if (extension == ".gif")
-    return {"-vf", "fps=fps='min(50,source_fps)',split[a][b];[a]palettegen[p];[b][p]paletteuse=dither=bayer"};
-  if (extension == ".webm")
-    return {"-c:v", "libvpx-vp9", "-b:v", "0", "-crf", "30", "-row-mt", "1", "-cpu-used", "4", "-pix_fmt", "yuv420p"};
-  return {"-c:v", "libx264", "-crf", "18", "-preset", "medium", "-movflags", "+faststart", "-pix_fmt", "yuv420p"};
+    return {"-vf",
+            "fps=fps='min(50,source_fps)',split[a][b];[a]palettegen[p];[b][p]paletteuse=dither=bayer:bayer_scale=4:"
+            "diff_mode=rectangle"};
+  std::vector<std::string> words = {"-vf",   kColors,      "-colorspace", "bt709", "-color_primaries",
+                                    "bt709", "-color_trc", "bt709",       "-c:v"};
+  // VP9 holds transparency.
+  const std::vector<std::string> coder =
+      extension == ".webm" ? std::vector<std::string>{"libvpx-vp9", "-b:v",     "0",         "-crf", "24",
+                                                      "-row-mt",    "1",        "-cpu-used", "3",    "-auto-alt-ref",
+                                                      "0",          "-pix_fmt", "yuva420p"}
+                           : std::vector<std::string>{"libx264",   "-crf",       "18",       "-preset", "medium",
+                                                      "-movflags", "+faststart", "-pix_fmt", "yuv420p"};
+  words.insert(words.end(), coder.begin(), coder.end());
+  return words;
 }
 
 }  // namespace

@@ -35,8 +35,6 @@ constexpr ForeignFormat kFormats[] = {
     {".meshb", "a binary Medit mesh", Converter::meshio},
     {".feb", "an FEBio model", Converter::febio},
     {".fbx", "an FBX scene", Converter::blender},
-    {".glb", "a glTF scene", Converter::blender},
-    {".gltf", "a glTF scene", Converter::blender},
     {".dae", "a COLLADA scene", Converter::blender},
     {".blend", "a Blender scene", Converter::blender},
     {".abc", "an Alembic scene", Converter::blender},

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kGzipWindow = 15 + 16;  // largest window; 16 selects gzip's header and trailer [zlib.h, deflateInit2]
 constexpr int kMemoryLevel = 8;       // zlib's default
-constexpr size_t kChunk = size_t{1} << 16;
+constexpr size_t kGzipChunk = size_t{1} << 16;
 
 // zlib counts in 32 bits, so the input is passed in portions.
 void hand_over(z_stream& stream, std::string_view& rest) {
@@ -26,9 +26,9 @@ void hand_over(z_stream& stream, std::string_view& rest) {
 
 // Provides room for another chunk at the end of `bytes`; `take_back` removes the unused part.
 void add_room(z_stream& stream, std::string& bytes) {
-  bytes.resize(bytes.size() + kChunk);
-  stream.next_out = reinterpret_cast<Bytef*>(bytes.data() + bytes.size() - kChunk);
-  stream.avail_out = kChunk;
+  bytes.resize(bytes.size() + kGzipChunk);
+  stream.next_out = reinterpret_cast<Bytef*>(bytes.data() + bytes.size() - kGzipChunk);
+  stream.avail_out = kGzipChunk;
 }
 
 void take_back(const z_stream& stream, std::string& bytes) { bytes.resize(bytes.size() - stream.avail_out); }

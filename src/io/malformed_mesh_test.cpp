@@ -6,6 +6,7 @@
 #include <random>
 
 #include "base/error.h"
+#include "io/gltf_reader.h"
 #include "io/gmsh.h"
 #include "io/legacy_vtk.h"
 #include "io/medit.h"
@@ -35,10 +36,16 @@ MeshContent legacy_vtk_content(const std::string& file, std::string_view text) {
           grid.triangles.triangles};
 }
 
+MeshContent gltf_content(const std::string& file, std::string_view bytes) {
+  return parse_gltf(file, bytes,
+                    [&](auto& name) -> std::string { throw InvalidInput(file + ":1: " + name + "; none"); });
+}
+
 std::vector<Case> cases() {
   const std::map<std::string, Parser> parsers = {
-      {".msh", parse_gmsh}, {".mesh", parse_medit}, {".obj", parse_obj},         {".off", parse_off},
-      {".ply", parse_ply},  {".stl", parse_stl},    {".vtk", legacy_vtk_content}};
+      {".msh", parse_gmsh},         {".mesh", parse_medit}, {".obj", parse_obj},
+      {".off", parse_off},          {".ply", parse_ply},    {".stl", parse_stl},
+      {".vtk", legacy_vtk_content}, {".glb", gltf_content}, {".gltf", gltf_content}};
   std::vector<Case> result;
   for (const MeshExample& example : mesh_examples())
     result.push_back({example.name, example.contents, parsers.at(example.extension)});

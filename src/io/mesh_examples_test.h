@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "io/base64.h"
+
 namespace aspic {
 
 struct MeshExample {
@@ -240,6 +242,32 @@ inline std::string legacy_vtk_surface() {
          "CELL_DATA 3\nSCALARS part int\nLOOKUP_TABLE default\n1 2 3\n";
 }
 
+// A square of two triangles with shared corners repeated, moved by (0, 0, 2): binary, or text with a data URI.
+inline std::string gltf_square(bool is_binary) {
+  std::string bytes;
+  for (const float x : {0.F, 0.F, 0.F, 1.F, 0.F, 0.F, 1.F, 1.F, 0.F, 0.F, 1.F, 0.F, 1.F, 1.F, 0.F, 0.F, 0.F, 0.F})
+    bytes.append(reinterpret_cast<const char*>(&x), 4);
+  bytes.append("\0\1\2\3\5\4", 6);
+  std::string uri = ",\"uri\":\"data:application/octet-stream;base64,";
+  append_base64(bytes, uri);
+  std::string json =
+      R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"children":[1]},{"mesh":0,"translation":[0,0,2]}],)"
+      R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],"accessors":[)"
+      R"({"bufferView":0,"componentType":5126,"count":6,"type":"VEC3"},)"
+      R"({"bufferView":1,"componentType":5121,"count":6,"type":"SCALAR"}],"bufferViews":[)"
+      R"({"buffer":0,"byteLength":72},{"buffer":0,"byteOffset":72,"byteLength":6}],"buffers":[{"byteLength":78)" +
+      (is_binary ? "" : uri + "\"") + "}]}";
+  if (!is_binary) return json;
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  bytes.resize(80);
+  std::string file = "glTF";
+  const auto put = [&](size_t word) { file.append(reinterpret_cast<const char*>(&word), 4); };
+  put(2), put(28 + json.size() + bytes.size()), put(json.size());
+  file += "JSON" + json;
+  put(bytes.size());
+  return file + std::string("BIN\0", 4) + bytes;
+}
+
 // All files are valid.
 inline std::vector<MeshExample> mesh_examples() {
   return {
@@ -262,6 +290,8 @@ inline std::vector<MeshExample> mesh_examples() {
        "  endloop\n endfacet\n FACET NORMAL nan nan nan\n  OUTER LOOP\n   VERTEX -0 0 0\n   VERTEX 1e0 0 0\n"
        "   VERTEX 0 0 1\n  ENDLOOP\n ENDFACET\nendsolid two words\n",
        4, 0, 2},
+      {"glTF binary", ".glb", gltf_square(true), 4, 0, 2},
+      {"glTF text", ".gltf", gltf_square(false), 4, 0, 2},
       {"legacy VTK 3.0 text", ".vtk", legacy_vtk(false, false), 5, 2, 0, {7, 9}},
       {"legacy VTK 3.0 binary", ".vtk", legacy_vtk(true, false), 5, 2, 0, {7, 9}},
       {"legacy VTK 5.1 text", ".vtk", legacy_vtk(false, true), 5, 2, 0, {7, 9}},

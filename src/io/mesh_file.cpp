@@ -10,6 +10,7 @@
 #include "base/free_memory.h"
 #include "io/atomic_file.h"
 #include "io/foreign_formats.h"
+#include "io/gltf_reader.h"
 #include "io/gmsh.h"
 #include "io/legacy_vtk.h"
 #include "io/medit.h"
@@ -87,6 +88,26 @@ void write_tetgen(const fs::path& path, const TetMesh& mesh, FileEncoding encodi
   write_file(partner(path, ".ele"), text.ele);
 }
 
+// Text and mesh are in memory together; a mesh needs about as much as its text.
+void check_memory(const fs::path& path) {
+  constexpr std::uintmax_t kSmall = std::uintmax_t{1} << 24;
+  std::error_code error;
+  const std::uintmax_t bytes = fs::file_size(path, error);
+  if (error || bytes < kSmall) return;
+  const auto available = static_cast<std::uintmax_t>(free_memory());
+  if (bytes > available / 2)
+    throw InvalidInput(path.string() + ": is " + std::to_string(bytes) + " bytes, and reading it takes twice that; " +
+                       std::to_string(available) + " bytes of memory are free; use a coarser mesh");
+}
+
+MeshContent read_gltf(const fs::path& path) {
+  const auto read_beside = [&](const std::string& name) {
+    check_memory(path.parent_path() / name);
+    return read_file(path.parent_path() / name);
+  };
+  return parse_gltf(path.string(), read_file(path), read_beside);
+}
+
 MeshContent read_vtk_mesh(const fs::path& path) {
   Vtu vtu = read_vtk_or_vtu(path);
   if (!vtu.mesh.tets.empty())
@@ -116,6 +137,8 @@ const std::vector<Format>& formats() {
       {".obj", "Wavefront OBJ", read_text<parse_obj>, nullptr, write_text<TriMesh, obj_text>, false, true},
       {".ply", "PLY, ASCII and binary", read_text<parse_ply>, nullptr, write_bytes<TriMesh, ply_bytes>, false, true},
       {".stl", "STL, ASCII and binary", read_text<parse_stl>, nullptr, write_stl, false, true},
+      {".glb", "glTF 2.0", read_gltf, nullptr, nullptr, false, true},
+      {".gltf", "glTF 2.0", read_gltf, nullptr, nullptr, false, true},
       {".off", "OFF, ASCII", read_text<parse_off>, nullptr, write_text<TriMesh, off_text>, false, true},
   };
   return table;
@@ -145,18 +168,6 @@ void check_vertices(const fs::path& path, const std::vector<Vec3d>& vertices) {
       if (!std::isfinite(coordinate))
         throw InvalidInput(path.string() + ": not written, since vertex " + std::to_string(i) +
                            " has a coordinate that is not finite; find out where it comes from");
-}
-
-// Text and mesh are in memory together; a mesh needs about as much as its text.
-void check_memory(const fs::path& path) {
-  constexpr std::uintmax_t kSmall = std::uintmax_t{1} << 24;
-  std::error_code error;
-  const std::uintmax_t bytes = fs::file_size(path, error);
-  if (error || bytes < kSmall) return;
-  const auto available = static_cast<std::uintmax_t>(free_memory());
-  if (bytes > available / 2)
-    throw InvalidInput(path.string() + ": is " + std::to_string(bytes) + " bytes, and reading it takes twice that; " +
-                       std::to_string(available) + " bytes of memory are free; use a coarser mesh");
 }
 
 template <class Elements>

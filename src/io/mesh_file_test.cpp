@@ -146,13 +146,13 @@ TEST_F(MeshFile, UnreadableFilesAreNamedWithRemedy) {
       read("a.inp", "*NODE"),
       HasSubstr("a.inp: this is an Abaqus or CalculiX input file, which is not read; convert its tets by meshio"));
   EXPECT_THAT(read("a.STEP", ""), HasSubstr("this is STEP geometry, which is not read; mesh it by Gmsh: gmsh"));
-  for (const char* name : {"a.feb", "a.fbx", "a.glb", "a.3mf", "a.bdf", "a.vtp", "a.nii"})
+  for (const char* name : {"a.feb", "a.fbx", "a.dae", "a.3mf", "a.bdf", "a.vtp", "a.nii"})
     EXPECT_THAT(read(name, ""), HasSubstr(", which is not read; ")) << name;
   EXPECT_THAT(read("a", ""), HasSubstr("no mesh format has the extension ''"));
   EXPECT_THAT(read("a.obj", ""), HasSubstr("a.obj: holds no faces"));
   EXPECT_THAT(read("b.obj", "v 0 0 0\n"), HasSubstr("b.obj: holds no faces"));
   EXPECT_THAT(read("a.node", "0 3 0 0\n"), HasSubstr("a.ele: does not exist; a TetGen mesh is a pair"));
-  for (const char* name : {"a.msh", "a.mesh", "a.ply", "a.stl", "a.off", "a.vtu"})
+  for (const char* name : {"a.msh", "a.mesh", "a.ply", "a.stl", "a.off", "a.vtu", "a.glb", "a.gltf"})
     EXPECT_THAT(read(name, ""), HasSubstr(name)) << name;
   EXPECT_THAT(message_of([&] { read_mesh(folder / "none.msh"); }), HasSubstr("none.msh: cannot be read"));
   fs::create_directory(folder / "folder.msh");

@@ -11,14 +11,14 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-constexpr const char* kHead =
+constexpr const char* kPaintedHead =
     "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty double stiff\nproperty float y\n"
     "property float z\nproperty list uchar int tags\nproperty uchar pin\nelement face 1\n"
     "property list uchar int vertex_indices\nend_header\n";
 constexpr const char* kFace = "3 0 1 2\n";
 
 std::string text(const std::string& first_value) {
-  return kHead + ("0 " + first_value) + " 0 0 0 1\n1 -2 0 0 2 7 8 0\n0 1e3 1 0 0 255\n" + kFace;
+  return kPaintedHead + ("0 " + first_value) + " 0 0 0 1\n1 -2 0 0 2 7 8 0\n0 1e3 1 0 0 255\n" + kFace;
 }
 
 TEST(PaintedPly, ReadsAttributeBesideCoordinates) {

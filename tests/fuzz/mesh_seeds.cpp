@@ -26,7 +26,7 @@ TetMesh two_regions() {
 void append_examples(std::vector<Seed>& seeds) {
   const std::map<std::string, std::string> targets = {{".msh", "gmsh"}, {".mesh", "medit"}, {".obj", "obj"},
                                                       {".off", "off"},  {".ply", "ply"},    {".stl", "stl"},
-                                                      {".vtk", "vtk"}};
+                                                      {".vtk", "vtk"},  {".glb", "gltf"},   {".gltf", "gltf"}};
   int number = 0;
   for (const MeshExample& example : mesh_examples())
     seeds.push_back({targets.at(example.extension), std::to_string(++number), example.contents});

@@ -3,6 +3,7 @@
 #include <cstring>
 #include <optional>
 
+#include "io/gltf_reader.h"
 #include "io/gmsh.h"
 #include "io/gmsh_slices.h"
 #include "io/legacy_vtk.h"
@@ -90,6 +91,11 @@ void ply(std::string_view bytes) {
   for (const double value : painted.value) require(std::isfinite(value), "values are finite");
 }
 void stl(std::string_view bytes) { require_valid(parse_stl("file", bytes)); }
+
+void gltf(std::string_view bytes) {
+  const ReadBeside none = [](const std::string& name) -> std::string { throw InvalidInput(name + ": is not there"); };
+  require_valid(parse_gltf("file", bytes, none));
+}
 
 void tetgen(std::string_view bytes) {
   constexpr std::string_view kBetween = "====\n";

@@ -17,6 +17,7 @@ std::span<const Target> targets() {
       {"off", off},
       {"ply", ply},
       {"stl", stl},
+      {"gltf", gltf},
       {"doctor", doctor},
       {"gzip", gzip},
       {"base64", base64},

@@ -27,6 +27,7 @@ void obj(std::string_view bytes);
 void off(std::string_view bytes);
 void ply(std::string_view bytes);
 void stl(std::string_view bytes);
+void gltf(std::string_view bytes);
 void doctor(std::string_view bytes);  // OFF or Medit, examined and repaired
 // Parts of files.
 void gzip(std::string_view bytes);

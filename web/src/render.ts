@@ -4,11 +4,13 @@ import { Vector3 } from "three";
 import { element } from "./dom";
 import { Page } from "./page";
 import type { Send } from "./program";
-import type { Field } from "./protocol";
+import type { Field, Vec3 } from "./protocol";
 import type { RecordedSource } from "./recorded";
 import { Store } from "./store";
 import { type CameraRig, kViewNames, orientationFrom, sceneAxes, type ViewName } from "./view/cameras";
-import { Display } from "./view/display";
+import type { Box } from "./view/body";
+import { Display, type DisplaySettings } from "./view/display";
+import { project } from "./view/lens";
 import { View } from "./view/view";
 
 export interface RenderRequest {
@@ -18,6 +20,9 @@ export interface RenderRequest {
   color: string; // field; "": none
   wires: boolean;
   dark: boolean;
+  preset: string; // "": none
+  transparent: boolean; // no background
+  samples: number; // directions of light; 1: a sun
   step: number | null; // draws one picture, of the nearest frame
   every: number; // simulated time between pictures [s]; 0: a picture of every frame
 }
@@ -34,6 +39,9 @@ export function renderRequest(query: URLSearchParams): RenderRequest {
     color: query.get("color") ?? "",
     wires: query.get("wires") !== "0",
     dark: query.get("dark") === "1",
+    preset: query.get("preset") ?? "",
+    transparent: query.get("transparent") === "1",
+    samples: number("samples", 1),
     step: query.has("step") ? number("step", 0) : null,
     every: number("every", 0),
   };
@@ -60,6 +68,27 @@ export function stepsToShow(frames: { step: number[]; time: number[] }, request:
   });
 }
 
+// Settings for pictures in articles and in talks.
+const kPresets: Record<string, Partial<DisplaySettings>> = {
+  "": { shininess: 20 },
+  paper: { inside: "same", pins: false, contacts: false, grid: false, scaleBar: true, shininess: 15, ownBackground: true, background: "#ffffff" },
+  talk: { inside: "same", shininess: 20, pins: false, contacts: false, textSize: 1.7 },
+};
+const kFilled = 0.86; // part of the picture that the box of the run fills
+
+// Moves the camera so that the box just fits the picture.
+function fit(rig: CameraRig, { lower, upper }: Box, width: number, height: number): void {
+  const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((k) => [0, 1, 2].map((c) => (k & (1 << c) ? upper : lower)[c]) as Vec3);
+  for (let tries = 0; tries < 4; ++tries) {
+    const lens = rig.lens(width, height);
+    const sizes = corners.map((corner) => {
+      const [x, y] = project(lens, corner);
+      return Math.max(Math.abs(x / width - 0.5), Math.abs(y / height - 0.5));
+    });
+    rig.distance *= (2 * Math.max(...sizes)) / kFilled;
+  }
+}
+
 function aim(rig: CameraRig, request: RenderRequest, source: RecordedSource, up: [number, number, number]): void {
   if (typeof request.view === "string") {
     rig.setView(request.view);
@@ -67,6 +96,7 @@ function aim(rig: CameraRig, request: RenderRequest, source: RecordedSource, up:
     const axes = sceneAxes(up);
     rig.orientation.copy(orientationFrom(new Vector3(...request.view).normalize(), axes.up, axes.right));
   }
+  rig.setOrthographic(request.preset === "paper");
   rig.center(source.box.lower, source.box.upper);
 }
 
@@ -99,7 +129,7 @@ async function draw(request: RenderRequest, source: RecordedSource, send: Send):
   document.body.replaceChildren(host);
   const view = new View(host, store, new Page(), "a", display);
   await started(store);
-  display.change({ wires: request.wires });
+  display.change({ ...kPresets[request.preset], wires: request.wires, transparent: request.transparent });
   view.renderSize(request.width, request.height);
   const scene = store.side("a")?.scene;
   if (!scene) throw new Error("the recording has no scene");
@@ -107,12 +137,14 @@ async function draw(request: RenderRequest, source: RecordedSource, send: Send):
   view.drawNow();
   if (request.color !== "") await color(request, source, display, scene.fields);
   aim(display.camera("a"), request, source, scene.up);
+  const { width, height } = view.lens();
+  fit(display.camera("a"), source.box, width, height);
   const steps = stepsToShow(source.frames, request);
   await send("/count", String(steps.length));
   for (const step of steps) {
     view.drawNow(); // the source waits until the previous picture is drawn
     await source.request({ do: "rewind", step });
-    await send("/frame", await view.screenshot());
+    await send("/frame", request.samples > 1 ? await view.softScreenshot(request.samples) : await view.screenshot());
   }
 }
 

@@ -21,10 +21,14 @@ export const kDefaults = {
   shininess: 40,
   ownBackground: false, // otherwise the background of the theme
   background: "#ffffff",
+  transparent: false, // no background, for pictures
   obstacles: true,
+  grid: true, // of the ground
   contacts: true,
   shadows: true,
   axes: true,
+  scaleBar: false, // in orthographic views, where a length is the same at every depth
+  textSize: 1, // in pictures, relative to the usual size
   pins: true,
   fibres: true,
   clip: "off" as "off" | "x" | "y" | "z",

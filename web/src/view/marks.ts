@@ -5,8 +5,8 @@ import type { Field, StepRow, Vec3 } from "../protocol";
 import { colorAt, type MapName } from "./colorMaps";
 import { contactText, kContactMap } from "./contacts";
 import { apart, type Box } from "./labels";
-import { isBehind, project, type Lens } from "./lens";
-import { fraction, logTicks, ticks, type ColorRange } from "./ranges";
+import { isBehind, pixelsPerMeter, project, type Lens } from "./lens";
+import { fraction, logTicks, roundStep, ticks, type ColorRange } from "./ranges";
 import { unitText, valueText } from "./values";
 
 export interface Ink {
@@ -129,7 +129,7 @@ export function axes(ink: Ink, lens: Lens): void {
   const colors = ["#d1495b", "#3f9142", "#3a6fd8"];
   const ends = [0, 1, 2].map((c) => ({ c, x: lens.right[c], y: -lens.up[c], depth: lens.forward[c] }));
   for (const { c, x, y } of ends.sort((a, b) => b.depth - a.depth)) {
-    stroke(ink, [[x0, y0], [x0 + size * x, y0 + size * y]], 2, colors[c]);
+    stroke(ink, [[x0, y0], [x0 + size * x, y0 + size * y]], 0.13 * ink.em, colors[c]);
     text(ink, "xyz"[c], x0 + 1.28 * size * x, y0 + 1.28 * size * y, "center");
   }
 }
@@ -222,6 +222,17 @@ export function contactLegend(ink: Ink, lens: Lens, { largest, row }: { largest:
   context.fillRect(left, top, width, em);
   text(ink, most, right, top + em / 2, "right");
   text(ink, kContactTitle, left - 0.5 * em, top + em / 2, "right");
+}
+
+// Draws a round length below the middle of an orthographic view.
+export function scaleBar(ink: Ink, lens: Lens): void {
+  if (lens.extent <= 0) return;
+  const scale = pixelsPerMeter(lens, 0);
+  const step = roundStep(lens.width / 6 / scale);
+  const [x, y, half] = [lens.width / 2, lens.height - 1.3 * ink.em, (scale * step) / 2];
+  stroke(ink, [[x - half, y], [x + half, y]], 0.13 * ink.em, ink.text);
+  for (const end of [x - half, x + half]) stroke(ink, [[end, y - 0.35 * ink.em], [end, y + 0.35 * ink.em]], 0.13 * ink.em, ink.text);
+  text(ink, valueText(step, "m"), x, y - 1.1 * ink.em, "center");
 }
 
 export function gridNote(ink: Ink, lens: Lens, step: number): void {

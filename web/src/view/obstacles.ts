@@ -25,6 +25,7 @@ class Ground extends THREE.Mesh {
     gridStep: { value: 1 },
     gridOrigin: { value: new THREE.Vector2() },
     gridColor: { value: new THREE.Color() },
+    gridStrength: { value: 1 },
   };
 
   constructor(
@@ -50,8 +51,10 @@ class Ground extends THREE.Mesh {
     this.uniforms.gridOrigin.value.set(-dot(this.axes[0], foot) / unit.radius, -dot(this.axes[1], foot) / unit.radius);
   }
 
-  color(grid: string): void {
-    this.uniforms.gridColor.value.set(grid);
+  // null: no grid, only shadows.
+  color(grid: string | null): void {
+    this.uniforms.gridStrength.value = grid === null ? 0 : 1;
+    if (grid !== null) this.uniforms.gridColor.value.set(grid);
   }
 }
 
@@ -104,7 +107,7 @@ export class ObstacleBodies extends THREE.Group {
     for (const ground of this.grounds) ground.follow(point, unit);
   }
 
-  color(grid: string): void {
+  color(grid: string | null): void {
     for (const ground of this.grounds) ground.color(grid);
   }
 }

@@ -11,6 +11,7 @@ import type { ColorRange } from "./ranges";
 export interface Marks {
   axes?: boolean;
   gridStep?: number; // [m]; 0: no grid
+  scaleBar?: boolean;
   bar?: { field: Pick<Field, "label" | "unit">; range: ColorRange; map: MapName } | null;
   contact?: { largest: number; row: StepRow | null } | null; // pressure of the last color [Pa], and the step shown
   bodies?: { name: string; color: string }[]; // entries of the legend; empty: no legend
@@ -36,11 +37,11 @@ export function readStyle(host: HTMLElement, settings: DisplaySettings, size: [n
   const own = settings.ownBackground ? settings.background : null;
   return {
     text: own ? (isLight(own) ? "#1b1f27" : "#e8ebf0") : style.getPropertyValue("--text"),
-    background: own ?? style.getPropertyValue("--background"),
+    background: settings.transparent ? "transparent" : own ?? style.getPropertyValue("--background"),
     accent: style.getPropertyValue("--series-2"),
     grid: style.getPropertyValue("--faint"),
     font: style.fontFamily,
-    em: size ? Math.max(10, size[1] / 45) : parseFloat(style.fontSize),
+    em: size ? Math.max(10, (settings.textSize * size[1]) / 45) : parseFloat(style.fontSize),
   };
 }
 
@@ -63,6 +64,7 @@ export class Overlay {
     for (const { x, y, text } of what.labels ?? []) marks.label(ink, text, x, y);
     marks.highlights(ink, lens, what.highlights ?? [], lens.width);
     if (what.axes) marks.axes(ink, lens);
+    if (what.scaleBar) marks.scaleBar(ink, lens);
     if (what.gridStep) marks.gridNote(ink, lens, what.gridStep);
     const taken = marks.bodyLegend(ink, lens, what.bodies ?? []);
     if (what.contact) marks.contactLegend(ink, lens, what.contact, taken);

@@ -2,6 +2,7 @@
 import { element, png } from "../dom";
 import type { Lens } from "./lens";
 import { Overlay, type Marks, type Style } from "./overlay";
+import { MeanPicture } from "./meanPicture";
 import { Stage } from "./stage";
 
 export class Screen {
@@ -42,11 +43,22 @@ export class Screen {
   }
 
   // PNG of both canvases, right after drawing.
-  picture(): Promise<Blob> {
+  picture(body = this.canvas): Promise<Blob> {
     const { width, height } = this.overlay.canvas;
     const canvas = Object.assign(element("canvas"), { width, height });
     const context = canvas.getContext("2d")!;
-    for (const layer of [this.canvas, this.overlay.canvas]) context.drawImage(layer, 0, 0);
+    for (const layer of [body, this.overlay.canvas]) context.drawImage(layer, 0, 0);
     return png(canvas);
+  }
+
+  // PNG in soft light: the mean of pictures that differ in the directions of light.
+  softPicture(lens: Lens, style: Style, samples: number): Promise<Blob> {
+    const mean = new MeanPicture(this.canvas.width, this.canvas.height);
+    for (let i = 0; i < samples; ++i) {
+      this.stage?.lightSoftly(i, samples);
+      this.stage?.render(lens, style.accent);
+      mean.add(this.canvas);
+    }
+    return this.picture(mean.draw());
   }
 }

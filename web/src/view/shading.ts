@@ -102,7 +102,7 @@ export function makeGroundMaterial(uniforms: Uniforms): THREE.ShadowMaterial {
 }
 
 const kGroundPars = /* glsl */ `
-  uniform float gridStep;
+  uniform float gridStep, gridStrength;
   uniform vec2 gridOrigin;
   uniform vec3 gridColor;
   varying vec2 vPlane;
@@ -112,7 +112,7 @@ const kGroundColor = /* glsl */ `
   vec2 cell = (vPlane - gridOrigin) / gridStep;
   vec2 blur = max(fwidth(cell), 1e-6);
   vec2 line = clamp(1.0 - abs(fract(cell - 0.5) - 0.5) / blur, 0.0, 1.0) * (1.0 - smoothstep(0.15, 0.5, blur));
-  float grid = 0.1 + 0.4 * max(line.x, line.y);
+  float grid = gridStrength * (0.1 + 0.4 * max(line.x, line.y));
   float shade = opacity * (1.0 - getShadowMask());
   float fade = 1.0 - smoothstep(0.35, 1.0, length(vPlane) / ${kGroundRadius.toFixed(1)});
   float cover = 1.0 - (1.0 - shade) * (1.0 - grid);

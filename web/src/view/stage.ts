@@ -15,6 +15,9 @@ import { kGroundRadius } from "./shading";
 import type { ToolShape } from "./viewTool";
 
 const kFarthest = 1e4; // limit for a body that bursts; beyond it depths lose their digits
+const kLampWidth = 0.04; // 1 - cosine of half the angle of the lamp of soft light
+const kLowestSky = 0.35; // sine of the lowest direction of soft light
+const kSoftSky = 0.8; // intensity of light without shadows in soft light
 const kFar = 30; // far plane in radii of the scene, and in heights of the view
 
 export class Stage {
@@ -32,22 +35,27 @@ export class Stage {
   private readonly orthographic = new THREE.OrthographicCamera();
   private readonly sky = new THREE.HemisphereLight("#ffffff", "#c4bfb8", 1.9);
   private readonly sun = new THREE.DirectionalLight("#fffaf0", 1.9);
+  private readonly dome = new THREE.DirectionalLight("#ffffff", 2.4); // one direction of a bright sky, only in soft light
   private readonly lamp = new THREE.DirectionalLight("#ffffff", 0.55); // light at the camera
   readonly obstacles = new ObstacleBodies();
   readonly contacts = new ContactDots();
+  private shift = [0, 0]; // shift of the picture, less than a pixel; the mean of shifted pictures has smooth edges
   private tool: ToolShape | null = null;
   private readonly lit = new THREE.Sphere(new THREE.Vector3(), 0); // region that the shadow map covers
 
   constructor(canvas: HTMLCanvasElement) {
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
+    this.renderer = new THREE.WebGLRenderer({ canvas, alpha: true, antialias: true, powerPreference: "high-performance" });
     this.renderer.localClippingEnabled = true;
     Object.assign(this.renderer.shadowMap, { enabled: true, autoUpdate: false });
-    this.sun.castShadow = true;
-    this.sun.shadow.mapSize.set(1024, 1024);
-    Object.assign(this.sun.shadow, { radius: 6, bias: -0.0008 });
+    for (const light of [this.sun, this.dome]) {
+      light.castShadow = true;
+      light.shadow.mapSize.setScalar(light === this.sun ? 1024 : 256); // the sky's is blurred
+      Object.assign(light.shadow, { radius: 6, bias: -0.0008 });
+    }
+    this.dome.visible = false;
     this.extras.matrixAutoUpdate = false;
     this.extras.add(this.contacts);
-    this.scene.add(this.extras, this.sky, this.sun, this.sun.target, this.lamp, this.lamp.target, this.obstacles);
+    this.scene.add(this.extras, this.sky, this.sun, this.sun.target, this.dome, this.dome.target, this.lamp, this.lamp.target, this.obstacles);
   }
 
   // Places lights around the bounding box of a scene.
@@ -60,6 +68,19 @@ export class Stage {
     this.sky.position.copy(up);
     this.lit.radius = 0;
     this.sun.userData.from = up.clone().multiplyScalar(1.6).add(front).addScaledVector(right, -0.7).normalize();
+  }
+
+  // Lights the stage with sample `i` of soft light: a direction of a wide lamp and one of a bright sky. The mean of
+  // the pictures of all samples has soft shadows, and is darker where less of the sky is visible.
+  lightSoftly(i: number, count: number): void {
+    this.shift = [(i + 0.5) / count - 0.5, ((i * 0.618034) % 1) - 0.5];
+    const upward = new THREE.Vector3(...this.up);
+    const part = (i + 0.5) / count;
+    this.aim(this.sun, around(this.sun.userData.from as THREE.Vector3, i, 1 - kLampWidth * part));
+    this.aim(this.dome, around(upward, i, 1 - (1 - kLowestSky) * part));
+    this.dome.visible = true;
+    this.sky.intensity = kSoftSky;
+    this.renderer.shadowMap.needsUpdate = true;
   }
 
   show(body: Body): void {
@@ -101,11 +122,11 @@ export class Stage {
   }
 
   apply(settings: DisplaySettings, colors: { background: string; grid: string }): void {
-    this.scene.background = new THREE.Color(colors.background);
+    this.scene.background = settings.transparent ? null : new THREE.Color(colors.background);
     this.obstacles.visible = settings.obstacles;
-    this.obstacles.color(colors.grid);
+    this.obstacles.color(settings.grid ? colors.grid : null);
     this.contacts.visible = settings.contacts;
-    this.sun.castShadow = settings.shadows;
+    this.sun.castShadow = this.dome.castShadow = settings.shadows;
     this.renderer.shadowMap.needsUpdate = true;
   }
 
@@ -122,6 +143,7 @@ export class Stage {
     camera.position.copy(this.toUnits(lens.eye));
     const [right, up, forward] = [lens.right, lens.up, lens.forward].map((axis) => new THREE.Vector3(...axis));
     camera.setRotationFromMatrix(new THREE.Matrix4().makeBasis(right, up, forward.clone().negate()));
+    camera.setViewOffset(lens.width, lens.height, this.shift[0]!, this.shift[1]!, lens.width, lens.height);
     this.lamp.position.copy(camera.position);
     this.lamp.target.position.copy(camera.position).add(forward);
     this.contacts.adapt(liftPerPixel(lens, this.radius));
@@ -133,6 +155,7 @@ export class Stage {
     this.remove();
     disposeOf(this.scene);
     this.sun.dispose();
+    this.dome.dispose();
     this.renderer.dispose();
     this.renderer.forceContextLoss(); // browsers allow about sixteen contexts
   }
@@ -191,14 +214,25 @@ export class Stage {
       this.lit.center.copy(ball.center);
       this.lit.radius = 1.3 * ball.radius;
     }
+    this.aim(this.sun, this.sun.userData.from as THREE.Vector3);
+  }
+
+  // Lets a light shine from a direction onto what the shadow map covers.
+  private aim({ position, target, shadow }: THREE.DirectionalLight, from: THREE.Vector3): void {
     const { center, radius } = this.lit;
-    const shadow = this.sun.shadow;
-    this.sun.target.position.copy(center);
-    this.sun.position.copy(center).addScaledVector(this.sun.userData.from as THREE.Vector3, 4 * radius);
+    target.position.copy(center);
+    position.copy(center).addScaledVector(from, 4 * radius);
     Object.assign(shadow.camera, { left: -radius, right: radius, top: radius, bottom: -radius, near: radius, far: 12 * radius });
     shadow.normalBias = 0.012 * radius;
     shadow.camera.updateProjectionMatrix();
   }
+}
+
+// Direction `i` of a sequence that winds about a unit axis by the golden angle; its angle from the axis has this cosine.
+function around(axis: THREE.Vector3, i: number, cosine: number): THREE.Vector3 {
+  const { right, front } = sceneAxes(axis.toArray());
+  const [angle, sine] = [2.39996 * i, Math.sqrt(1 - cosine * cosine)];
+  return axis.clone().multiplyScalar(cosine).addScaledVector(right, sine * Math.cos(angle)).addScaledVector(front, sine * Math.sin(angle));
 }
 
 // Lift of a marker per pixel of its width, see makePinMaterial.

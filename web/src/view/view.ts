@@ -69,6 +69,12 @@ export class View {
     return this.screen.picture();
   }
 
+  // The same in soft light, as the mean of so many pictures.
+  softScreenshot(samples: number): Promise<Blob> {
+    this.drawNow();
+    return this.screen.softPicture(this.lens(), this.style, samples);
+  }
+
   // Fixes the size in pixels, independent of the page's layout, for pictures without a screen.
   renderSize(width: number, height: number): void {
     this.fixedSize = [width, height];
@@ -216,7 +222,7 @@ export class View {
 
   // Width of the strip beside the body for the color bar.
   private strip(): number {
-    return this.figure.colored() ? kBarWidth * this.style.em : 0;
+    return this.figure.colored() ? Math.round(kBarWidth * this.style.em) : 0;
   }
 
   private pixelRatio(): number {
@@ -231,7 +237,8 @@ export class View {
     const brushes = settings.tool === "pin" && cursor;
     return {
       axes: settings.axes,
-      gridStep: this.figure.body && this.screen.stage?.obstacles.hasGround ? this.screen.stage.gridStep : 0,
+      scaleBar: settings.scaleBar,
+      gridStep: settings.grid && this.figure.body && this.screen.stage?.obstacles.hasGround ? this.screen.stage.gridStep : 0,
       bar: shown && { ...shown, map: this.display.map(shown.field) },
       contact: this.figure.contact(),
       bodies: shown ? [] : this.figure.bodies(),
