@@ -50,9 +50,9 @@ int run(const std::string& name) {
   fmt::print("{}\n", scene.about);
   const fs::path out = fs::path("out") / name;
   const int code = run_scene(scene.file, out);
-  fmt::print("\naspic view {}                live, to drag it and change its values\n", scene.file.string());
-  fmt::print("aspic view {}                plays this run\n", out.string());
-  fmt::print("aspic render {} -o {}.mp4    makes a video of it\n", out.string(), name);
+  fmt::print("\nlive       aspic view {}\n", scene.file.string());
+  fmt::print("play       aspic view {}\n", out.string());
+  fmt::print("video      aspic render {} -o {}.mp4\n", out.string(), name);
   return code;
 }
 
