@@ -14,7 +14,7 @@ const here = dirname(fileURLToPath(import.meta.url));
 const [page, engine, root, out, threads] = process.argv.slice(2);
 if (!out) throw new Error("node site.mjs PAGE ENGINE ROOT OUT [THREADS]");
 
-const kFolders = ["scenes", "scenes/lecture"];
+const kFolders = ["scenes", "scenes/gallery", "scenes/lecture"];
 
 function shippedFiles() {
   const files = {};
@@ -22,7 +22,7 @@ function shippedFiles() {
     for (const name of readdirSync(join(root, folder)))
       if (name.endsWith(".toml")) files[`/${folder}/${name}`] = readFileSync(join(root, folder, name), "utf8");
   for (const [scene, text] of Object.entries({ ...files }))
-    for (const [, mesh] of text.matchAll(/^[^#\n]*"([\w.]+\.mesh)"/gm)) {
+    for (const [, mesh] of text.matchAll(/^[^#\n]*"([\w.]+\.(?:mesh|obj))"/gm)) {
       const path = `${dirname(scene)}/${mesh}`;
       files[path] = readFileSync(join(root, path), "utf8");
     }

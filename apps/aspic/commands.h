@@ -1,5 +1,6 @@
 // Commands of the program. Each adds itself to the command line and, if selected, sets `action`.
 #pragma once
+#include <filesystem>
 #include <functional>
 #include <string>
 
@@ -21,6 +22,7 @@ enum ExitCode {
 using Action = std::function<int()>;  // returns the exit code
 
 void add_run(CLI::App& app, Action& action);
+void add_gallery(CLI::App& app, Action& action);
 void add_check(CLI::App& app, Action& action);
 void add_other_programs(CLI::App& app, Action& action);  // mesh: aspic-mesh; fit, capture and others: aspic-fit
 void add_convert(CLI::App& app, Action& action);
@@ -37,6 +39,10 @@ void add_viewer_commands(CLI::App& app, Action& action);  // view, report, rende
 void add_view(CLI::App& app, Action& action);
 void add_report(CLI::App& app, Action& action);
 void add_render(CLI::App& app, Action& action);
+
+// Begins, resumes, or does nothing, as `aspic run SCENE --out OUT --continue`; returns the exit code. Throws
+// InvalidInput.
+int run_scene(const std::filesystem::path& scene, const std::filesystem::path& out);
 
 std::string version_text();
 

@@ -5,6 +5,7 @@ int main(int argc, char** argv) {
   using namespace aspic::cli;
   return main_program(argc, argv, [](CLI::App& app, Action& action) {
     add_run(app, action);
+    add_gallery(app, action);
     add_check(app, action);
     add_convert(app, action);
     add_other_programs(app, action);

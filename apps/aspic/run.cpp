@@ -275,7 +275,18 @@ int run(const RunArguments& arguments) {
   return exit_code(arguments, loop.has_run_out(), unconverged);
 }
 
+int run_recorded(const RunArguments& arguments) {
+  if (!arguments.continues) return run(arguments);
+  return recorded(directory_to_resume(arguments), [&] { return run(arguments); });
+}
+
 }  // namespace
+
+int run_scene(const fs::path& scene, const fs::path& out) {
+  RunArguments arguments;
+  arguments.input = scene, arguments.out = out, arguments.continues = true;
+  return run_recorded(arguments);
+}
 
 void add_run(CLI::App& app, Action& action) {
   const auto arguments = std::make_shared<RunArguments>();
@@ -323,12 +334,7 @@ solver.time_budget ended it) or an explicit scheme blew up, which ends the run;
   command->add_flag("-q,--quiet", arguments->quiet, "Print only warnings and errors");
   command->add_flag("--json", arguments->json, "Print one line of JSON per step on stdout, all else on stderr");
   command->add_flag("--allow-unconverged", arguments->allow_unconverged, "Exit with 0 even if a step did not converge");
-  command->callback([arguments, &action] {
-    action = [arguments] {
-      if (!arguments->continues) return run(*arguments);
-      return recorded(directory_to_resume(*arguments), [&] { return run(*arguments); });
-    };
-  });
+  command->callback([arguments, &action] { action = [arguments] { return run_recorded(*arguments); }; });
 }
 
 }  // namespace aspic::cli

@@ -59,7 +59,8 @@ Json mesh_error_reply(Stage& stage, ShownSide& shown, const StopToken& stop) {
 Json gallery_reply(const Gallery& gallery) {
   Json reply = {{"scenes", Json::array()}, {"recent", Json::array()}};
   for (const OfferedScene& scene : gallery.scenes)
-    reply["scenes"].push_back({{"name", scene.name}, {"about", scene.about}, {"path", scene.path.string()}});
+    reply["scenes"].push_back(
+        {{"name", scene.name}, {"about", scene.about}, {"path", scene.path.string()}, {"picture", scene.picture}});
   for (const fs::path& path : gallery.recent) reply["recent"].push_back(path.string());
   return reply;
 }

@@ -45,6 +45,7 @@ struct Lesson {
 struct OfferedScene {
   std::string name, about;  // file name; one sentence
   std::filesystem::path path;
+  std::string picture;  // URL of its data; empty: none
 };
 
 struct Gallery {

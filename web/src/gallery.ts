@@ -58,9 +58,10 @@ function makeFileChooser(open: (files: File[]) => Promise<void>): HTMLElement {
 }
 
 function makeShelves({ scenes, recent }: GalleryReply, load: (scene: string) => Promise<void>): HTMLElement[] {
-  const entry = (title: string, about: string, path: string): HTMLElement => {
+  const entry = (title: string, about: string, path: string, picture = ""): HTMLElement => {
     const made = button({ title: path }, () => void load(path));
     made.className = "scene";
+    if (picture) made.append(element("img", { src: picture, alt: "" }));
     made.append(element("b", {}, title), ...(about ? [element("span", { class: "faint" }, about)] : []));
     return made;
   };
@@ -68,11 +69,11 @@ function makeShelves({ scenes, recent }: GalleryReply, load: (scene: string) => 
     entries.length === 0 ? [] : [element("section", {}, element("h3", {}, title), ...entries)];
   return [
     ...shelf("Opened before", recent.map((path) => entry(path.slice(path.lastIndexOf("/") + 1), path, path))),
-    ...shelvesOf(scenes).flatMap(({ title, entries }) => shelf(title, entries.map(({ name, about, path }) => entry(name, about, path)))),
+    ...shelvesOf(scenes).flatMap(({ title, entries }) => shelf(title, entries.map(({ name, about, path, picture }) => entry(name, about, path, picture)))),
   ];
 }
 
-const kTitles: Record<string, string> = { "": "Scenes", lecture: "Lecture", capture: "Capture and fitting" };
+const kTitles: Record<string, string> = { "": "Scenes", gallery: "More scenes", lecture: "Lecture", capture: "Capture and fitting" };
 
 // Scenes by folder, in the order of the program.
 export function shelvesOf(scenes: GalleryReply["scenes"]): { title: string; entries: GalleryReply["scenes"] }[] {

@@ -340,7 +340,7 @@ export interface SceneFilesReply {
 }
 
 export interface GalleryReply {
-  scenes: { name: string; about: string; path: string }[];
+  scenes: { name: string; about: string; path: string; picture: string }[]; // URL of an image; "": none
   recent: string[]; // paths
 }
 

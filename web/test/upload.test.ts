@@ -91,8 +91,8 @@ test("a damaged archive is refused", () => {
 
 test("scenes are grouped by folder", () => {
   const shelves = shelvesOf([
-    { name: "bunny.toml", about: "", path: "/s/bunny.toml" },
-    { name: "lecture/33_mouse.toml", about: "", path: "/s/lecture/33_mouse.toml" },
+    { name: "bunny.toml", about: "", picture: "", path: "/s/bunny.toml" },
+    { name: "lecture/33_mouse.toml", about: "", picture: "", path: "/s/lecture/33_mouse.toml" },
   ]);
   assert.deepEqual(shelves.map(({ title, entries }) => [title, entries[0]!.name]), [["Scenes", "bunny"], ["Lecture", "33_mouse"]]);
 });
