@@ -69,7 +69,7 @@ export class View {
     return this.screen.picture();
   }
 
-  // The same in soft light, as the mean of so many pictures.
+  // In soft light: the mean of `samples` pictures.
   softScreenshot(samples: number): Promise<Blob> {
     this.drawNow();
     return this.screen.softPicture(this.lens(), this.style, samples);
