@@ -1,8 +1,10 @@
 #include "io/gltf_reader.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
 #include "base/error.h"
@@ -17,9 +19,10 @@ namespace {
 using Json = nlohmann::json;
 
 enum NumberType { kUint8 = 5121, kUint16 = 5123, kUint32 = 5125, kFloat32 = 5126 };
-constexpr int64_t kTriangles = 4;                      // mode of a primitive
-constexpr uint32_t kJsonChunk = 0x4e4f534a;            // type of a chunk
-constexpr int64_t kLargest = int64_t{1} << 40;         // of an integer, so that products with a stride do not overflow
+constexpr uint64_t kTriangles = 4;                // mode of a primitive
+constexpr uint32_t kJsonChunk = 0x4e4f534a;       // type of a chunk
+constexpr uint64_t kLargest = uint64_t{1} << 40;  // of an integer, so that products with a stride do not overflow
+constexpr uint64_t kLargestStride = 252;
 constexpr uint64_t kMostRepeated = uint64_t{1} << 22;  // vertices and corners of meshes that several nodes repeat
 
 // x -> linear x + translation
@@ -56,15 +59,15 @@ class GltfReader {
   MeshContent read() {
     check_head();
     read_buffers();
-    const Json& scene = item("scenes", root_.contains("scene") ? integer(root_, "scene", "the file") : 0);
+    const Json& scene = item("scenes", integer(root_, "scene", "the file", 0));
     visited_.resize(list(root_, "nodes").size());
-    std::vector<std::pair<int64_t, Placement>> pending;
+    std::vector<std::pair<uint64_t, Placement>> pending;
     add_nodes(list(scene, "nodes"), {}, pending);
     while (!pending.empty()) {
       const auto [index, parent] = pending.back();
       pending.pop_back();
       const Json& node = item("nodes", index);
-      if (std::exchange(visited_[static_cast<size_t>(index)], 1)) fail(name("nodes", index) + " has two parents");
+      if (std::exchange(visited_[index], 1)) fail(name("nodes", index) + " has two parents");
       const Placement placement = parent * placement_of(node, name("nodes", index));
       if (node.contains("mesh"))
         add_mesh(integer(node, "mesh", "a node"), node.contains("skin") ? Placement{} : placement);
@@ -74,7 +77,7 @@ class GltfReader {
   }
 
  private:
-  static std::string name(const char* what, int64_t index) {
+  static std::string name(const char* what, uint64_t index) {
     return std::string(what) + "[" + std::to_string(index) + "]";
   }
 
@@ -136,24 +139,19 @@ class GltfReader {
     return found ? *found : kEmpty;
   }
 
-  const Json& item(const char* key, int64_t index) const {
+  const Json& item(const char* key, uint64_t index) const {
     const Json& items = list(root_, key);
-    if (index >= static_cast<int64_t>(items.size()))
-      fail(name(key, index) + " is named, but there are " + std::to_string(items.size()));
-    return items[static_cast<size_t>(index)];
+    if (index >= items.size()) fail(name(key, index) + " is named, but there are " + std::to_string(items.size()));
+    return items[index];
   }
 
-  int64_t integer(const Json& object, const char* key, const std::string& owner) const {
+  uint64_t integer(const Json& object, const char* key, const std::string& owner,
+                   std::optional<uint64_t> fallback = std::nullopt) const {
     const Json* found = member(object, key);
-    if (!found || !found->is_number_integer()) fail(owner + " has no integer " + key);
-    const auto value = found->get<int64_t>();
-    if (value < 0 || value > kLargest || (found->is_number_unsigned() && found->get<uint64_t>() > kLargest))
-      fail(key + (" of " + owner) + " is out of range: " + found->dump());
-    return value;
-  }
-
-  int64_t integer_or_zero(const Json& object, const char* key, const std::string& owner) const {
-    return member(object, key) ? integer(object, key, owner) : 0;
+    if (!found && fallback) return *fallback;
+    if (!found || !found->is_number_unsigned()) fail(owner + " has no integer " + key);
+    if (found->get<uint64_t>() > kLargest) fail(key + (" of " + owner) + " is out of range: " + found->dump());
+    return found->get<uint64_t>();
   }
 
   template <size_t n>
@@ -183,11 +181,11 @@ class GltfReader {
   }
 
   void add_nodes(const Json& nodes, const Placement& parent,
-                 std::vector<std::pair<int64_t, Placement>>& pending) const {
+                 std::vector<std::pair<uint64_t, Placement>>& pending) const {
     for (const Json& node : nodes) {
       if (!node.is_number_unsigned() || node.get<uint64_t>() >= visited_.size())
         fail("a list of nodes names none of the " + std::to_string(visited_.size()));
-      pending.emplace_back(node.get<int64_t>(), parent);
+      pending.emplace_back(node.get<uint64_t>(), parent);
     }
     if (pending.size() > visited_.size()) fail("a node has two parents");
   }
@@ -195,15 +193,15 @@ class GltfReader {
   void read_buffers() {
     const Json& buffers = list(root_, "buffers");
     for (size_t i = 0; i < buffers.size(); ++i) {
-      const std::string owner = name("buffers", static_cast<int64_t>(i));
+      const std::string owner = name("buffers", i);
       const Json* uri = member(buffers[i], "uri");
       if (uri && !uri->is_string()) fail("uri of " + owner + " is no text");
       std::string bytes =
           uri ? bytes_of(uri->get_ref<const std::string&>(), owner) : std::string(i == 0 ? binary_ : "");
-      const int64_t length = integer(buffers[i], "byteLength", owner);
-      if (static_cast<uint64_t>(length) > bytes.size())
+      const uint64_t length = integer(buffers[i], "byteLength", owner);
+      if (length > bytes.size())
         fail(owner + " should have " + std::to_string(length) + " bytes, but has " + std::to_string(bytes.size()));
-      bytes.resize(static_cast<size_t>(length));
+      bytes.resize(length);
       budget_ += bytes.size();
       buffers_.push_back(std::move(bytes));
     }
@@ -224,50 +222,56 @@ class GltfReader {
     return bytes;
   }
 
-  // Elements of an accessor whose size and place are checked.
-  struct Elements {
-    const std::string* bytes;
-    size_t begin, stride, count;
-    int64_t type;
+  struct View {
+    std::string_view bytes;
+    uint64_t stride;  // 0: the elements follow each other
   };
 
-  Elements elements(int64_t index, const char* shape, size_t components) {
+  View view(uint64_t index) const {
+    const std::string owner = name("bufferViews", index);
+    const Json& view = item("bufferViews", index);
+    const auto buffer = integer(view, "buffer", owner);
+    if (buffer >= buffers_.size()) fail(owner + " names a missing buffer");
+    const std::string_view bytes = buffers_[buffer];
+    const uint64_t offset = integer(view, "byteOffset", owner, 0), length = integer(view, "byteLength", owner);
+    if (offset + length > bytes.size())
+      fail(owner + " ends beyond its buffer of " + std::to_string(bytes.size()) + " bytes");
+    return {bytes.substr(offset, length), integer(view, "byteStride", owner, 0)};
+  }
+
+  // Elements of an accessor whose size and place are checked.
+  struct Elements {
+    std::string_view bytes;
+    size_t stride, count;
+    uint64_t type;
+  };
+
+  Elements elements(uint64_t index, const char* shape, size_t components) {
     const std::string owner = name("accessors", index);
     const Json& accessor = item("accessors", index);
     if (accessor.contains("sparse") || !accessor.contains("bufferView"))
       fail(owner + " is sparse or compressed", "export it without sparse accessors and compression");
-    const int64_t type = integer(accessor, "componentType", owner), count = integer(accessor, "count", owner);
     const Json* given = member(accessor, "type");
     if (!given || *given != shape) fail(owner + " is no " + shape);
+    const uint64_t type = integer(accessor, "componentType", owner), count = integer(accessor, "count", owner);
     if (components == 3 ? type != kFloat32 : type != kUint8 && type != kUint16 && type != kUint32)
       fail(owner + " has components of type " + std::to_string(type), "export positions as 32-bit floats");
-    const int64_t view_index = integer(accessor, "bufferView", owner);
-    const std::string view_name = name("bufferViews", view_index);
-    const Json& view = item("bufferViews", view_index);
-    const int64_t buffer = integer(view, "buffer", view_name);
-    if (buffer >= static_cast<int64_t>(buffers_.size())) fail(view_name + " names a missing buffer");
-    const std::string& bytes = buffers_[static_cast<size_t>(buffer)];
-    const auto at = static_cast<uint64_t>(integer_or_zero(view, "byteOffset", view_name));
-    const auto length = static_cast<uint64_t>(integer(view, "byteLength", view_name));
-    if (at + length > bytes.size())
-      fail(view_name + " ends beyond its buffer of " + std::to_string(bytes.size()) + " bytes");
-    const size_t size = components * (type == kUint8 ? 1 : type == kUint16 ? 2 : 4);
-    const auto begin = static_cast<uint64_t>(integer_or_zero(accessor, "byteOffset", owner));
-    const auto stride =
-        member(view, "byteStride") ? static_cast<uint64_t>(integer(view, "byteStride", view_name)) : size;
-    if (stride < size || stride > 252) fail(view_name + " has byteStride " + std::to_string(stride));
-    if (count > 0 && begin + stride * static_cast<uint64_t>(count - 1) + size > length)
-      fail(owner + " ends beyond its bufferView of " + std::to_string(length) + " bytes");
-    if (static_cast<uint64_t>(count) > budget_)
-      fail("the nodes repeat meshes to too many vertices", "reduce the instances");
-    budget_ -= static_cast<uint64_t>(count);
-    return {&bytes, static_cast<size_t>(at + begin), static_cast<size_t>(stride), static_cast<size_t>(count), type};
+    const auto [bytes, given_stride] = view(integer(accessor, "bufferView", owner));
+    const uint64_t offset = integer(accessor, "byteOffset", owner, 0);
+    const uint64_t size = components * (type == kUint8 ? 1 : type == kUint16 ? 2 : 4);
+    const uint64_t stride = given_stride == 0 ? size : given_stride;
+    if (stride < size || stride > kLargestStride) fail(owner + " has byteStride " + std::to_string(stride));
+    if (count > 0 && offset + stride * (count - 1) + size > bytes.size())
+      fail(owner + " ends beyond its bufferView of " + std::to_string(bytes.size()) + " bytes");
+    if (count > budget_) fail("the nodes repeat meshes to too many vertices", "reduce the instances");
+    budget_ -= count;
+    return {bytes.substr(std::min<uint64_t>(offset, bytes.size())), stride, count, type};
   }
 
-  void add_mesh(int64_t index, const Placement& placement) {
+  void add_mesh(uint64_t index, const Placement& placement) {
     VertexMerger merger;
     for (const Json& primitive : list(item("meshes", index), "primitives")) {
-      const int64_t mode = primitive.contains("mode") ? integer(primitive, "mode", "a primitive") : kTriangles;
+      const uint64_t mode = integer(primitive, "mode", "a primitive", kTriangles);
       if (mode < kTriangles) continue;  // points and lines
       if (mode > kTriangles) fail(name("meshes", index) + " has strips or fans", "triangulate it");
       const Json* attributes = member(primitive, "attributes");
@@ -279,11 +283,11 @@ class GltfReader {
   }
 
   // Returns the merged index of each vertex.
-  std::vector<int> add_vertices(int64_t accessor, const Placement& placement, VertexMerger& merger) {
+  std::vector<int> add_vertices(uint64_t accessor, const Placement& placement, VertexMerger& merger) {
     const Elements points = elements(accessor, "VEC3", 3);
     std::vector<int> vertices;
     for (size_t i = 0; i < points.count; ++i) {
-      ByteCursor cursor(file_, *points.bytes, points.begin + i * points.stride);
+      ByteCursor cursor(file_, points.bytes, i * points.stride);
       Vec3d x;
       for (double& coordinate : x.a) coordinate = cursor.read<float>("a position");
       x = placement.linear * x + placement.translation;
@@ -298,11 +302,11 @@ class GltfReader {
   void add_triangles(const Json& primitive, const std::vector<int>& vertices, bool is_mirrored) {
     std::vector<int> corners = vertices;
     if (primitive.contains("indices")) {
-      const int64_t accessor = integer(primitive, "indices", "a primitive");
+      const uint64_t accessor = integer(primitive, "indices", "a primitive");
       const Elements indices = elements(accessor, "SCALAR", 1);
       corners.clear();
       for (size_t i = 0; i < indices.count; ++i) {
-        ByteCursor cursor(file_, *indices.bytes, indices.begin + i * indices.stride);
+        ByteCursor cursor(file_, indices.bytes, i * indices.stride);
         const uint32_t corner = indices.type == kUint8    ? cursor.read<uint8_t>("an index")
                                 : indices.type == kUint16 ? cursor.read<uint16_t>("an index")
                                                           : cursor.read<uint32_t>("an index");

@@ -290,13 +290,13 @@ inline std::vector<MeshExample> mesh_examples() {
        "  endloop\n endfacet\n FACET NORMAL nan nan nan\n  OUTER LOOP\n   VERTEX -0 0 0\n   VERTEX 1e0 0 0\n"
        "   VERTEX 0 0 1\n  ENDLOOP\n ENDFACET\nendsolid two words\n",
        4, 0, 2},
-      {"glTF binary", ".glb", gltf_square(true), 4, 0, 2},
-      {"glTF text", ".gltf", gltf_square(false), 4, 0, 2},
       {"legacy VTK 3.0 text", ".vtk", legacy_vtk(false, false), 5, 2, 0, {7, 9}},
       {"legacy VTK 3.0 binary", ".vtk", legacy_vtk(true, false), 5, 2, 0, {7, 9}},
       {"legacy VTK 5.1 text", ".vtk", legacy_vtk(false, true), 5, 2, 0, {7, 9}},
       {"legacy VTK 5.1 binary", ".vtk", legacy_vtk(true, true), 5, 2, 0, {7, 9}},
       {"legacy VTK surface", ".vtk", legacy_vtk_surface(), 4, 0, 4},
+      {"glTF binary", ".glb", gltf_square(true), 4, 0, 2},
+      {"glTF text", ".gltf", gltf_square(false), 4, 0, 2},
   };
 }
 
