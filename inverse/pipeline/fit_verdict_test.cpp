@@ -284,7 +284,7 @@ TEST(FitVerdict, HeldOutErrorsIncludeLeftOutGroups) {
   EXPECT_LT(all, 0.9 * alone);
   const FitVerdict judged = verdict(three_indentations(), outcome);
   for (const FitReason& reason : judged.reasons)
-    if (reason.name == "predicts_badly") EXPECT_DOUBLE_EQ(reason.value.value_or(0), all);
+    EXPECT_DOUBLE_EQ(reason.name == "predicts_badly" ? reason.value.value_or(0) : all, all);
 }
 
 TEST(FitVerdict, OneValueInsteadOfFieldIsNotGood) {
