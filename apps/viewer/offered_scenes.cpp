@@ -1,7 +1,7 @@
 #include "viewer/offered_scenes.h"
 
 #include <algorithm>
-#include <utility>
+#include <tuple>
 
 #include "io/atomic_file.h"
 #include "io/base64.h"
@@ -34,7 +34,7 @@ std::vector<OfferedScene> scenes_below(const fs::path& folder) {
                         picture(folder, i->path().stem().string())});
   const auto is_inside = [](const OfferedScene& s) { return s.name.find('/') != std::string::npos; };
   std::sort(scenes.begin(), scenes.end(), [&](const auto& x, const auto& y) {
-    return std::pair(is_inside(x), x.name) < std::pair(is_inside(y), y.name);
+    return std::tuple(is_inside(x), x.picture.empty(), x.name) < std::tuple(is_inside(y), y.picture.empty(), y.name);
   });
   return scenes;
 }
