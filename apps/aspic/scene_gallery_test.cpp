@@ -28,13 +28,8 @@ TEST(GalleryTable, HasSceneSentenceAndPictureOfEachName) {
   }
   EXPECT_GE(names.size(), 24u);
   for (const auto& entry : fs::directory_iterator(kShipped / "gallery")) {
-<<<<<<< HEAD
     const bool is_listed = entry.path().extension() == ".toml" || entry.path().extension() == ".webp";
     EXPECT_TRUE(!is_listed || names.contains(entry.path().stem())) << entry.path() << ": is not in gallery.json";
-=======
-    if (entry.path().extension() == ".toml" || entry.path().extension() == ".webp")
-      EXPECT_TRUE(names.contains(entry.path().stem())) << entry.path() << ": is not in gallery.json";
->>>>>>> e1f9cd5f (Gallery test: braces)
   }
 }
 
