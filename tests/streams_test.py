@@ -38,6 +38,7 @@ USES = {
     "capture": (["--help"], ["none.toml"]),
     "modes": (["cube.toml", "--out", "modes", "--force"], ["none.toml"]),
     "lecture": ([], ["999"]),
+    "gallery": ([], ["none"]),
     "schema": ([], ["none"]),
     "verify": (["--list"], ["none"]),
     "view": (["--help"], ["none.toml"]),
