@@ -128,11 +128,11 @@ TEST(PairFinder, FindsOnlyPairsOfNewPositions) {
     const auto is_known = [&](const auto& points) {
       return std::none_of(points.begin(), points.end(), [&](int p) { return scene.is_new[p]; });
     };
-    const auto& [vertices, edges, triangles] = scene.primitives;
+    const SurfacePrimitives& all = scene.primitives;
     ClosePairs expected = brute_force(scene);
     std::erase_if(expected.vertex_triangle,
-                  [&](auto& k) { return !scene.is_new[vertices[k[0]]] && is_known(triangles[k[1]]); });
-    std::erase_if(expected.edge_edge, [&](auto& k) { return is_known(edges[k[0]]) && is_known(edges[k[1]]); });
+                  [&](auto& k) { return !scene.is_new[all.vertices[k[0]]] && is_known(all.triangles[k[1]]); });
+    std::erase_if(expected.edge_edge, [&](auto& k) { return is_known(all.edges[k[0]]) && is_known(all.edges[k[1]]); });
     expect_equal(find(finder, scene), expected);
   }
 }
