@@ -24,7 +24,8 @@ std::string view(beast::string_view text) { return {text.data(), text.size()}; }
 std::string content_policy(int port, const std::string& embed) {
   return fmt::format(
       "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; font-src data:; "
-      "media-src blob:; connect-src 'self' ws://127.0.0.1:{0} ws://localhost:{0} data: blob:; frame-ancestors {1}; "
+      "media-src blob:; worker-src blob:; connect-src 'self' ws://127.0.0.1:{0} ws://localhost:{0} data: blob:; "
+      "frame-ancestors {1}; "
       "base-uri 'none'; form-action 'none'",
       port, embed.empty() ? "'none'" : embed);
 }

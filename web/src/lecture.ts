@@ -1,11 +1,13 @@
 // Lecture mode: the pages of the lecture as a list, each opening its demonstration. A recorded mouse plays until the
 // reader drags the body.
 import { button, element } from "./dom";
+import { ExercisePanel } from "./exercises/panel";
 import { formulaElements } from "./formulas";
 import { Judge } from "./judgment";
 import type { Page } from "./page";
 import type { FunctionQuestion, Lesson } from "./protocol";
 import { shortcutButton } from "./shortcuts";
+import { makeSlides } from "./slides";
 import type { Store } from "./store";
 
 export function matches(lesson: Lesson, words: string): boolean {
@@ -62,6 +64,7 @@ export class Lecture {
   private hasReadAddress = false;
   private readonly card = element("article", { class: "lesson", "aria-live": "polite" });
   private readonly judge = new Judge();
+  private readonly exercise: ExercisePanel;
   private readonly replay = element("p", { class: "replay", hidden: true });
   private readonly list = element("ol", { class: "lessons" });
   private readonly search = element("input", { type: "search", placeholder: "Search", "aria-label": "Search the lecture" });
@@ -75,10 +78,12 @@ export class Lecture {
     private readonly page: Page,
     private readonly showFunction: (question: FunctionQuestion) => void,
   ) {
+    this.exercise = new ExercisePanel(store);
     const shortcut = { key: "l", does: "The lecture's pages", group: "Panels", run: () => this.toggle() } as const;
     this.opener = shortcutButton(page, shortcut, { text: "Lecture" });
     this.opener.hidden = true;
-    const turn = element("div", { class: "turn" }, this.previous, this.next);
+    const slides = makeSlides(page, this.card, (by) => this.move(by), () => this.startSlides());
+    const turn = element("div", { class: "turn" }, this.previous, this.next, slides);
     root.append(turn, this.card, this.replay, this.search, this.list);
     this.search.addEventListener("input", () => this.fill());
     store.on("hello", (hello) => this.greet(hello.lessons));
@@ -111,6 +116,13 @@ export class Lecture {
     if (this.lessons.length === 0) return;
     this.show(this.root.hidden === true);
     if (!this.root.hidden) this.search.focus();
+  }
+
+  private startSlides(): boolean {
+    if (this.lessons.length === 0) return false;
+    this.show(true);
+    if (!this.current) this.move(1);
+    return true;
   }
 
   private show(visible: boolean): void {
@@ -164,8 +176,10 @@ export class Lecture {
       element("p", {}, lesson.exercise),
       ...questionElements(lesson),
       this.judge.root,
+      this.exercise.root,
     );
     this.judge.show(lesson.id);
+    this.exercise.show(lesson.id);
     this.fill();
     this.list.querySelector("[aria-current]")?.scrollIntoView({ block: "nearest" });
     document.scrollingElement?.scrollTo(0, 0); // on a phone the whole page scrolls; show the view first

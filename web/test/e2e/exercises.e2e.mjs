@@ -1,0 +1,84 @@
+// Exercises beside the pages of the lecture, and the slide view.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { test } from "node:test";
+import { answered, downloaded, keepPicture, openSession, pageModule, startProgram } from "./harness.mjs";
+
+const program = await startProgram("scenes/cantilever.toml");
+const { exercises } = await pageModule("exercises/exercises.ts");
+
+const isLesson = ({ do: what }) => what === "lesson";
+
+async function openExercise(opened, { lesson, title }) {
+  const { page, heard } = opened;
+  if (await page.locator("#left").isHidden()) await page.keyboard.press("l");
+  const { lessons } = heard.messages.find(({ kind }) => kind === "hello");
+  const at = lessons.findIndex(({ id }) => id.startsWith(lesson));
+  await answered(opened, lesson, isLesson, () => page.locator("#left ol.lessons li button").nth(at).click());
+  await page.locator(".exercise summary", { hasText: title }).click();
+}
+
+async function verdict({ page }, code) {
+  await page.getByLabel("Code of the exercise").fill(code);
+  const shown = page.locator(".exercise [role=status]");
+  const check = page.getByRole("button", { name: "Check", exact: true });
+  await check.click();
+  await page.waitForFunction(() => !document.querySelector(".exercise button.primary").disabled);
+  return shown.innerText();
+}
+
+test("the solution of each exercise agrees with the engine", async () => {
+  const opened = await openSession(program);
+  for (const exercise of exercises) {
+    await openExercise(opened, exercise);
+    assert.match(await verdict(opened, exercise.code), /is .*, expected: /, exercise.id);
+    assert.match(await verdict(opened, exercise.solution), /^Correct: \d+ results agree with the engine/, exercise.id);
+    await opened.page.locator(".exercise summary", { hasText: "✓" }).waitFor();
+    await keepPicture(opened.page, `exercise_${exercise.id}`);
+  }
+  await opened.close();
+});
+
+test("wrong code is explained, and hints and a solution help", async () => {
+  const opened = await openSession(program, { expected: /SyntaxError/, prepare: (page) => page.addInitScript(() => delete window.localStorage) });
+  const { page } = opened;
+  const exercise = exercises.find(({ id }) => id === "line_search");
+  await openExercise(opened, exercise);
+  const solve = page.getByRole("button", { name: "Show a solution" });
+  assert.match(await verdict(opened, "function lineSearch() {\n  for (;;) {}\n}"), /^Stopped after 5 s: does a loop never end\?$/);
+  assert.match(await verdict(opened, "function lineSearch() {\n  return 1 +;\n}"), /^Line 2: SyntaxError: Unexpected token/);
+  assert.ok(await solve.isHidden());
+  assert.match(await verdict(opened, "function lineSearch(f) {\n  return f.nothing();\n}"), /^Line 2: f\.nothing is not a function/);
+  assert.match(await verdict(opened, "function lineSearch() {\n"), /is a bracket, a text or a comment not closed\?/);
+  assert.match(await verdict(opened, ""), /There is no function lineSearch/);
+  const wrong = await verdict(opened, exercise.code);
+  assert.match(wrong, /^rosenbrock, x = \(−1\.2, 1\), c = 0\.0001, p = 0\.5: your result is 1, expected: 0\.000\d+ \(the engine\)\.$/);
+  await page.getByRole("button", { name: "Hint (2 left)" }).click();
+  assert.equal(await page.locator(".exercise ol li").count(), 1);
+  await solve.click();
+  assert.equal(await page.locator(".exercise .solution").innerText(), exercise.solution);
+  await page.getByLabel("Your name").fill("Ada Lovelace");
+  const file = await downloaded(page, () => page.getByRole("button", { name: "Save my results" }).click());
+  assert.equal(file.suggestedFilename(), "exercises_Ada_Lovelace.json");
+  const saved = JSON.parse(readFileSync(await file.path(), "utf8")).exercises;
+  assert.deepEqual(saved, [{ name: "Ada Lovelace", exercise: "line_search", passed: false, tries: 6, code: exercise.code }]);
+  await opened.close();
+});
+
+test("slides fill the screen and are turned by keys", async () => {
+  const opened = await openSession(program);
+  const { page } = opened;
+  const title = page.locator("#left .lesson h2");
+  await answered(opened, "a page", isLesson, () => page.keyboard.press("Shift+F"));
+  await title.waitFor();
+  const first = await title.innerText();
+  assert.ok(await page.locator("#toolbar").isHidden());
+  for (const [key, changes] of [["ArrowRight", true], ["PageUp", false]]) {
+    await answered(opened, key, isLesson, () => page.keyboard.press(key));
+    await page.waitForFunction(([text, other]) => (document.querySelector("#left .lesson h2").textContent !== text) === other, [first, changes]);
+  }
+  await keepPicture(page, "slides");
+  await page.keyboard.press("Escape");
+  await page.locator("#toolbar").waitFor();
+  await opened.close();
+});
