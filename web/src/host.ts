@@ -27,7 +27,10 @@ function startHere(script: string, port: MessagePort): () => void {
   const worker = new Worker(urlOf(script));
   let flag = urlOf("");
   worker.onmessage = ({ data }: MessageEvent<string | ArrayBuffer>) => port.postMessage(data, typeof data === "string" ? [] : [data]);
-  worker.onerror = (event) => port.postMessage(JSON.stringify({ kind: "ended", why: event.message, line: event.lineno }));
+  worker.onerror = (event) => {
+    event.preventDefault(); // reported by the page
+    port.postMessage(JSON.stringify({ kind: "ended", why: event.message, line: event.lineno }));
+  };
   port.onmessage = ({ data: { message, stops } }: MessageEvent<Request>) => {
     if (stops) {
       URL.revokeObjectURL(flag);

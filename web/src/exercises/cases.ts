@@ -102,7 +102,7 @@ export async function densityCases(store: Store): Promise<Case[]> {
   );
   const cases = tets.map(({ tet, F, young, poisson, energy_density }) => {
     const mu = young! / (2 * (1 + poisson!));
-    const la = (young! * poisson!) / ((1 + poisson!) * (1 - 2 * poisson!)) + mu;
+    const la = (young! * poisson!) / ((1 + poisson!) * (1 - 2 * poisson!));
     return { at: `Tet ${tet} of the body, F = ${F.map(point).join(" ")}`, arguments: [F, mu, la], expected: energy_density!, source: kEngine };
   });
   const turned = { at: "A rotation by 90 degrees", arguments: [[[0, -1, 0], [1, 0, 0], [0, 0, 1]], 1, 2], expected: 0, source: "the rule: a rotation stores no energy" };

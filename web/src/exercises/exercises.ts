@@ -25,7 +25,7 @@ export const exercises: Exercise[] = [
     id: "density",
     lesson: "05-09_equation_of_motion",
     title: "an energy density",
-    text: "Write the energy density psi(F) of this body, the program's neo-Hookean material. F is a list of three rows; mu and la are the constants of the formula.",
+    text: "Write the energy density psi(F) of this body, the program's neo-Hookean material. F is a list of three rows; mu and la are the Lamé constants of the formula.",
     formula: "neo_hookean",
     entry: "psi",
     code: `function psi(F, mu, la) {
@@ -33,13 +33,13 @@ export const exercises: Exercise[] = [
   return 0;
 }
 `,
-    hints: ["I1 = tr F'F is the sum of the squares of all nine entries.", "J = det F = a . (b x c).", "Three terms: mu/2 (I1 - 3), -mu (J - 1) and la/2 (J - 1)^2."],
+    hints: ["I1 = tr F'F is the sum of the squares of all nine entries.", "J = det F = a . (b x c).", "Three terms: mu/2 (I1 - 3), -mu (J - 1) and (la + mu)/2 (J - 1)^2."],
     solution: `function psi(F, mu, la) {
   const [a, b, c] = F; // rows
   let I1 = 0;
   for (const row of F) for (const entry of row) I1 += entry * entry;
   const J = a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
-  return mu / 2 * (I1 - 3) - mu * (J - 1) + la / 2 * (J - 1) ** 2;
+  return mu / 2 * (I1 - 3) - mu * (J - 1) + (la + mu) / 2 * (J - 1) ** 2;
 }
 `,
     cases: densityCases,
