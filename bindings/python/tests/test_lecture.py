@@ -1,4 +1,5 @@
 """The programs of docs/python/lecture are short, run by themselves, and agree with the library."""
+import re
 import runpy
 
 import numpy as np
@@ -14,7 +15,9 @@ PROGRAMS = sorted((ROOT / "docs/python/lecture").glob("*.py"))
 def test_program_fits_a_page(path):
     text = path.read_text()
     assert len(text.splitlines()) <= 60
-    assert [line for line in text.splitlines() if line.startswith(("import", "from"))] == ["import numpy as np"]
+    lines = [line for line in text.splitlines() if line.startswith(("import", "from"))]
+    own = re.compile(r"from (finite_elements|newton|time_step) import .*")
+    assert [line for line in lines if not own.fullmatch(line)] == ["import numpy as np"]
 
 
 def result(name):
@@ -65,3 +68,26 @@ def test_newton(name):
     count = min(len(path), len(page))
     assert abs(len(path) - len(page)) <= 1  # the program stops before the last iterate is observed
     assert np.abs(np.array(path[:count]) - page[:count]).max() < 1e-9
+
+
+@pytest.fixture
+def solutions(monkeypatch):
+    monkeypatch.syspath_prepend(str(ROOT / "docs/python/lecture"))
+    return lambda week: result(f"week{week}")
+
+
+def test_solutions_of_derivatives_and_integrators(solutions):
+    errors = solutions(1)["errors"]
+    assert errors[0] > 50 * errors[1] > 2500 * errors[2]
+    kept = solutions(2)["kept"]
+    expected = {"forward_euler": 1.868615, "symplectic_euler": 1, "backward_euler": 0.535156}  # tests/bench/results/integrators.md
+    assert kept == pytest.approx(expected, abs=3e-4)
+
+
+def test_solutions_of_minimization(solutions):
+    assert solutions(3)["difference"] < 1e-6
+    counts = solutions(4)["counts"]
+    assert max(counts[3:7]) > 20 and min(counts) == counts[1]
+    counts = solutions(5)["counts"]
+    assert counts["steepest", True][1] < 0.3 * counts["steepest", False][1]
+    assert counts["newton", True][1] >= counts["newton", False][1]
