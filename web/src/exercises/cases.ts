@@ -86,8 +86,8 @@ export const stepCases = (runs: [string, [number, number], number, number, numbe
       return { at: `${name}, x = ${point(start)}, c = ${c}, p = ${p}`, arguments: [name, start, d, options], expected: iterations[0]!.alpha!, source: kEngine };
     }),
   );
-  const uphill = { alphaMax: 1, c: 1e-4, p: 0.5, tol: 1e-10 };
-  return [...cases, { at: "d leads uphill", arguments: ["rosenbrock", [0, 0], [-2, 0], uphill], expected: 0, source: "the rule: stuck" }];
+  const stuck = { alphaMax: 1, c: 1e-4, p: 0.5, tol: 0.01 };
+  return [...cases, { at: "rosenbrock, x = (−1.2, 1), tol = 0.01", arguments: ["rosenbrock", [-1.2, 1], [215.6, 88], stuck], expected: 0, source: "the rule: stuck" }];
 };
 
 const kTets = 6;

@@ -20,21 +20,25 @@ const kTolerance = 1e-6; // relative to the largest expected entry
 const kFloor = 1e-9; // absolute
 
 const entriesOf = (value: Value): number[] => (typeof value === "number" ? [value] : value.flatMap(entriesOf));
-const list = (value: unknown): string => (Array.isArray(value) ? `a list of ${value.length}` : typeof value === "number" ? "a number" : `${value ?? "nothing: is a return missing"}`);
+
+function kindOf(value: unknown): string {
+  if (Array.isArray(value)) return `a list of ${value.length}`;
+  return value === null ? "nothing: is a return missing?" : typeof value === "string" ? value : `a value of type ${typeof value}`;
+}
 
 // Describes the first difference; null: none.
 export function difference(found: unknown, expected: Value): string | null {
   const largest = Math.max(...entriesOf(expected).map(Math.abs));
   const compare = (got: unknown, want: Value, place: string): string | null => {
     if (Array.isArray(want)) {
-      if (!Array.isArray(got) || got.length !== want.length) return `${place} is ${list(got)}, expected: ${list(want)}`;
+      if (!Array.isArray(got) || got.length !== want.length) return `${place} is ${kindOf(got)}, expected: ${kindOf(want)}`;
       for (const [i, entry] of want.entries()) {
         const inside = compare(got[i], entry, `${place}[${i}]`);
         if (inside !== null) return inside;
       }
       return null;
     }
-    if (typeof got !== "number") return `${place} is ${list(got)}, expected: ${short(want, 8)}`;
+    if (typeof got !== "number") return `${place} is ${kindOf(got)}, expected: ${short(want, 8)}`;
     return Math.abs(got - want) <= kTolerance * largest + kFloor ? null : `${place} is ${short(got, 8)}, expected: ${short(want, 8)}`;
   };
   return compare(found, expected, "your result");
@@ -42,8 +46,8 @@ export function difference(found: unknown, expected: Value): string | null {
 
 export async function check(code: string, name: string, cases: Case[]): Promise<Verdict> {
   const { results, failure } = await runCode(code, name, cases.map((each) => each.arguments));
+  if (failure !== null) return { passed: false, text: failure };
   for (const [i, { at, expected, source }] of cases.entries()) {
-    if (i >= results.length) return { passed: false, text: failure ?? "" };
     const wrong = difference(results[i], expected);
     if (wrong !== null) return { passed: false, text: `${at}: ${wrong} (${source}).` };
   }

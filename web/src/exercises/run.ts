@@ -4,8 +4,8 @@ import { startWorker } from "../host";
 const kTimeLimit = 5000; // [ms]
 
 export interface Run {
-  results: unknown[]; // of the calls before a failure; numbers that are not finite as text: "NaN"
-  failure: string | null; // names the line
+  results: unknown[]; // of the calls; numbers that are not finite as text: "NaN"
+  failure: string | null; // names the line; then there are no results
 }
 
 // Calls the function for each list of arguments. A text among them names a planar function of the engine. The worker's
@@ -27,19 +27,18 @@ function serve(name: string, entry: unknown): void {
       },
     },
   };
-  const post = (results: unknown[], error?: unknown): void => {
-    const { message = String(error), stack = "" } = (error ?? {}) as Partial<Error>;
-    const answer = { results, ...(error === undefined ? {} : { error: message, stack }) };
-    postMessage(JSON.stringify(answer, (_, value: unknown) => (typeof value === "number" && !Number.isFinite(value) ? String(value) : value)));
+  const plain = (_: string, value: unknown): unknown => {
+    if (typeof value === "number" && !Number.isFinite(value)) return String(value);
+    return ArrayBuffer.isView(value) ? Array.from(value as Float64Array) : value;
   };
   onmessage = ({ data }: MessageEvent<{ message: unknown[][] }>) => {
-    const results: unknown[] = [];
     try {
       if (typeof entry !== "function") throw new Error(`There is no function ${name}.`);
-      for (const call of data.message) results.push(entry(...call.map((value) => (typeof value === "string" ? planar[value] : value))));
-      post(results);
+      const results = data.message.map((call) => entry(...call.map((value) => (typeof value === "string" ? planar[value] : value))));
+      postMessage(JSON.stringify({ results }, plain));
     } catch (error) {
-      post(results, error ?? "an error without a value");
+      const { message = `The code throws ${String(error)}.`, stack = "" } = (error ?? {}) as Partial<Error>;
+      postMessage(JSON.stringify({ results: [], error: message, stack }));
     }
   };
 }
@@ -54,20 +53,21 @@ export function lineOf(stack: string, lines: number): number | null {
 function failureOf(message: string, line: number | null, lines: number): string {
   const text = message.replace(/^Uncaught /, "");
   if (line === null) return text;
-  return line > lines ? `${text}: is a bracket, a text or a comment not closed?` : `Line ${line}: ${text}`;
+  return line > lines ? `${text}. Is a bracket, a text or a comment not closed?` : `Line ${line}: ${text}`;
 }
 
 export function runCode(code: string, name: string, calls: unknown[][]): Promise<Run> {
   const lines = code.split("\n").length;
   const worker = startWorker<unknown[][]>(`${code}\n;(${serve.toString()})("${name}", typeof ${name} === "undefined" ? undefined : ${name});`);
   const answer = new Promise<Run>((resolve) => {
-    const fail = (failure: string, results: unknown[] = []): void => resolve({ results, failure });
+    const fail = (failure: string): void => resolve({ results: [], failure });
     setTimeout(() => fail(`Stopped after ${kTimeLimit / 1000} s: does a loop never end?`), kTimeLimit);
     worker.onmessage = (data) => {
-      const { kind, why, line, results, error, stack } = JSON.parse(data as string);
+      if (typeof data !== "string" || !/^{"(results|kind)"/.test(data)) return; // posted by the code itself
+      const { kind, why, line, results, error, stack } = JSON.parse(data);
       if (kind === "ended") fail(failureOf(why, line, lines));
-      else if (error === undefined) resolve({ results, failure: null });
-      else fail(failureOf(error, lineOf(stack, lines), lines), results);
+      else if (error !== undefined) fail(failureOf(error, lineOf(stack, lines), lines));
+      else resolve({ results, failure: null });
     };
     worker.send(calls, false);
   });

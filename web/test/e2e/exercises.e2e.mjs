@@ -57,7 +57,7 @@ test("wrong code is explained, and hints and a solution help", async () => {
   assert.match(await verdict(opened, "function lineSearch() {\n  return 1 +;\n}"), /^Line 2: SyntaxError: Unexpected token/);
   assert.ok(await solve.isHidden());
   assert.match(await verdict(opened, "function lineSearch(f) {\n  return f.nothing();\n}"), /^Line 2: f\.nothing is not a function/);
-  assert.match(await verdict(opened, "function lineSearch() {\n"), /is a bracket, a text or a comment not closed\?/);
+  assert.match(await verdict(opened, "function lineSearch() {\n"), /Is a bracket, a text or a comment not closed\?/);
   assert.match(await verdict(opened, ""), /There is no function lineSearch/);
   const wrong = await verdict(opened, exercise.code);
   assert.match(wrong, /^rosenbrock, x = \(−1\.2, 1\), c = 0\.0001, p = 0\.5: your result is 1, expected: 9\.765625e−4 \(the engine\)\.$/);
