@@ -182,6 +182,7 @@ export class Lecture {
     this.exercise.show(lesson.id);
     this.fill();
     this.list.querySelector("[aria-current]")?.scrollIntoView({ block: "nearest" });
+    this.root.scrollTo(0, 0);
     document.scrollingElement?.scrollTo(0, 0); // on a phone the whole page scrolls; show the view first
     this.page.emit("panel", lesson.panel);
     this.page.emit("scale", lesson.log ? "log" : "linear");
