@@ -66,13 +66,15 @@ export class ThickSheets {
 
   // Moves the points. Positions that are not finite stay so; a normal of length 0 moves none.
   show({ positions, normals }: Surface): void {
-    this.source.forEach((v, i) => {
-      const [x, y, z] = normals.subarray(4 * v, 4 * v + 3);
-      const sign = Math.sign(this.offset[i]) || 1;
-      const along = this.offset[i] / (Math.hypot(x, y, z) || 1);
-      this.positions.set([positions[3 * v] + along * x, positions[3 * v + 1] + along * y, positions[3 * v + 2] + along * z], 3 * i);
-      this.normals.set([sign * x, sign * y, sign * z], 4 * i);
-    });
+    for (let i = 0; i < this.source.length; ++i) {
+      const [p, n] = [3 * this.source[i], 4 * this.source[i]];
+      const sign = this.offset[i] < 0 ? -1 : 1;
+      const along = this.offset[i] / (Math.hypot(normals[n], normals[n + 1], normals[n + 2]) || 1);
+      for (let c = 0; c < 3; ++c) {
+        this.positions[3 * i + c] = positions[p + c] + along * normals[n + c];
+        this.normals[4 * i + c] = sign * normals[n + c];
+      }
+    }
     for (let i = this.firstWall; i < this.source.length; i += 4) this.turnWall(i, positions);
   }
 
