@@ -26,9 +26,10 @@ for (const [name, pointer, options] of [["mouse", mouse, {}], ["finger", finger,
     await until("a grab", ({ state }) => state.a.grab);
     const start = heard.state.a.grab.point;
     await move(x + 50, y - 80);
-    const { target } = (await until("a pull", ({ state }) => distance(state.a.grab.target, start) > 0.1 && state.a.grab));
+    const { target } = await until("a pull", ({ state }) => distance(state.a.grab.target, start) > 0.1 && state.a.grab);
     await setPlaying(opened, true);
-    await until("the cloth at the pointer", ({ state }) => distance(state.a.grab.point, target) < 0.5 * distance(start, target));
+    const isNear = ({ grab, step }) => step >= 20 && distance(grab.point, target) < 0.3 * distance(start, target);
+    await until("the cloth at the pointer", ({ state, pictures }) => isNear(state.a) && pictures.a.step >= 20);
     await keepPicture(page, `site_cloth_${name}`);
     await up();
     await until("a release", ({ state }) => state.a.grab === null);
