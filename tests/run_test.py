@@ -274,6 +274,23 @@ class Render(CommandLine):
         self.assertEqual((self.folder / "beam.gif").read_bytes()[:6], b"GIF89a")
         self.assertEqual([f for f in self.folder.iterdir() if f.name.startswith(".aspic")], [])
 
+    def test_draws_the_thickness_of_sheets(self):
+        (self.folder / "mat.toml").write_text("""
+[time]
+step = 0.02
+duration = 0.02
+[[body]]
+shape = { rectangle = { width = 1, height = 1, size = 0.3 } }
+shell = { thickness = 0.08 }
+material = { young = 1e5, poisson = 0.3, density = 300 }
+""")
+        self.aspic("run", "mat.toml")
+        pictures = []
+        for name, options in (("thin.png", []), ("thick.png", ["--thickness"])):
+            self.aspic("render", "out/mat", "-o", name, "--size", "160x120", "--step", "1", *options, timeout=200)
+            pictures.append((self.folder / name).read_bytes())
+        self.assertNotEqual(*pictures)
+
     def test_bad_input_is_named(self):
         render = lambda *arguments: self.aspic("render", "out/beam", *arguments, code=2, timeout=200).stderr
         self.assertIn("--size 9x: write WIDTHxHEIGHT", render("-o", "a.png", "--step", "1", "--size", "9x"))

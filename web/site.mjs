@@ -29,6 +29,21 @@ function shippedFiles() {
   return files;
 }
 
+// Pictures of scenes for the dialog, in base64: the first frames of the animated WebP files.
+function stillPictures() {
+  const names = readdirSync(join(root, "scenes/gallery")).filter((name) => name.endsWith(".webp"));
+  return Object.fromEntries(names.map((name) => [`/scenes/gallery/${name}`, firstFrame(readFileSync(join(root, "scenes/gallery", name))).toString("base64")]));
+}
+
+// A frame is a chunk ANMF: tag, size, 16 bytes of placement, then the picture's own chunks.
+function firstFrame(animation) {
+  const start = animation.indexOf("ANMF");
+  const frame = animation.subarray(start + 24, start + 8 + animation.readUInt32LE(start + 4));
+  const head = Buffer.from("RIFF    WEBP");
+  head.writeUInt32LE(4 + frame.length, 4);
+  return Buffer.concat([head, frame]);
+}
+
 // As web/src/xz.ts unpacks it. Neither code nor texts have a period of 4 bytes, which LZMA would expect (pb). The dictionary
 // is allocated when unpacking.
 const kXz = ["--format=xz", "--check=crc32", "--lzma2=preset=9e,lc=4,pb=0,dict=8MiB", "--stdout"];
@@ -76,7 +91,7 @@ const parts = {
   "engine-opening": await opening(engine, files),
   engine: await workerScript(),
   "engine-program": await program(engine),
-  "engine-files": packed(Buffer.from(JSON.stringify(files))),
+  "engine-files": packed(Buffer.from(JSON.stringify({ ...files, ...stillPictures() }))),
   ...(threads ? { "engine-threads": await writeThreads() } : {}),
 };
 const html = readFileSync(page, "utf8").replace("<!-- recording -->", () => Object.entries(parts).map(([id, content]) => element(id, content)).join("\n"));

@@ -27,7 +27,7 @@ struct RenderArguments {
   std::string size = "1280x720", view = "isometric", color, preset;
   double fps = 30, speed = 1;
   int step = -1, samples = 0;
-  bool wires = true, dark = false, transparent = false, every_frame = false;
+  bool wires = true, thickness = false, dark = false, transparent = false, every_frame = false;
 };
 
 constexpr size_t kMaxBytes = 100'000'000;  // limit of the page, for browsers
@@ -41,6 +41,7 @@ viewer::RenderOptions render_options(const RenderArguments& arguments) {
                                 .wires = arguments.wires,
                                 .dark = arguments.dark || arguments.preset == "talk",
                                 .transparent = arguments.transparent,
+                                .thickness = arguments.thickness,
                                 .samples = arguments.samples > 0 ? arguments.samples
                                            : arguments.step < 0  ? 4
                                                                  : 32,
@@ -183,6 +184,7 @@ Chromium draws them with the page of aspic view and aspic report, on the CPU if 
                    "paper: white, orthographic, with a scale bar; talk: dark, with large text; both without wires")
       ->check(CLI::IsMember({"paper", "talk"}));
   command->add_flag("--wires,!--no-wires", arguments->wires, "Draw edges of the mesh, on without a preset");
+  command->add_flag("--thickness", arguments->thickness, "Draw sheets with their thickness");
   command->add_flag("--dark", arguments->dark, "Use a dark background");
   command->add_flag("--transparent", arguments->transparent, "Use no background");
   command

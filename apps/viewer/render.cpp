@@ -29,8 +29,8 @@ std::string query(const RenderOptions& options) {
   std::string text = fmt::format("&render=1&width={}&height={}&view={}&color={}&wires={}&dark={}&every={}",
                                  options.width, options.height, percent_coded(options.view),
                                  percent_coded(options.color), int{options.wires}, int{options.dark}, options.every);
-  text +=
-      fmt::format("&preset={}&transparent={}&samples={}", options.preset, int{options.transparent}, options.samples);
+  text += fmt::format("&preset={}&transparent={}&thickness={}&samples={}", options.preset, int{options.transparent},
+                      int{options.thickness}, options.samples);
   if (options.step >= 0) text += fmt::format("&step={}", options.step);
   return text;
 }

@@ -15,7 +15,7 @@ struct RenderOptions {
   std::string view = "isometric";  // a name, or the direction "x,y,z" to the camera
   std::string color = {};          // a field; empty: none
   std::string preset = {};         // "paper", "talk", or none
-  bool wires = true, dark = false, transparent = false;
+  bool wires = true, dark = false, transparent = false, thickness = false;
   int samples = 1;   // directions of light per picture; 1: a sun with sharp shadows
   int step = -1;     // one picture of the frame nearest to that step; -1: the whole run
   double every = 0;  // simulated time between pictures [s]; 0: one picture per frame

@@ -78,6 +78,7 @@ Json scene_json(const Scene& scene, const Table& document, const Box& start, con
                   {"triangles", model.mesh.sheet.size()},
                   {"bodies", Json::array()},
                   {"body_tets", Json::array()},
+                  {"thickness", Json::array()},
                   {"lower", json_of(seen.lower)},
                   {"upper", json_of(seen.upper)},
                   {"up", json_of(up_of(document))},
@@ -88,6 +89,7 @@ Json scene_json(const Scene& scene, const Table& document, const Box& start, con
   for (const BodyRange& body : model.bodies) {
     message["bodies"].push_back(body.name);
     message["body_tets"].push_back(body.first_element(model.mesh));
+    message["thickness"].push_back(body.is_sheet() ? model.mesh.thickness[body.first_triangle] : 0.0);
   }
   return message;
 }

@@ -242,8 +242,7 @@ class GltfReader {
   // Elements of an accessor whose size and place are checked.
   struct Elements {
     std::string_view bytes;
-    size_t stride, count;
-    uint64_t type;
+    uint64_t stride, count, type;
   };
 
   Elements elements(uint64_t index, const char* shape, size_t components) {

@@ -14,7 +14,7 @@ interface Program {
 // First message to the worker.
 export interface EngineParts extends Program {
   workers: number; // threads beside the first
-  files: string; // JSON, texts by paths, in base64 of xz
+  files: string; // JSON, texts by paths, of pictures base64, in base64 of xz
   task: { scene: string } | { judge: string }; // path of a scene; id of a lesson
 }
 

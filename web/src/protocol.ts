@@ -144,6 +144,7 @@ export interface Scene {
   triangles?: number; // of sheets; missing in recordings of earlier versions
   bodies: string[];
   body_tets: number[]; // first tet of each body, in the user's numbering
+  thickness?: number[]; // of each body [m]; 0: not a sheet; missing in recordings of earlier versions
   lower: Vec3; // bounding box of the initial state, with obstacles that are not much larger
   upper: Vec3;
   up: Vec3; // direction against gravity

@@ -19,6 +19,7 @@ export interface RenderRequest {
   view: ViewName | [number, number, number]; // canonical view, or direction of the camera
   color: string; // field; "": none
   wires: boolean;
+  thickness: boolean; // of sheets
   dark: boolean;
   preset: string; // "": none
   transparent: boolean; // no background
@@ -38,6 +39,7 @@ export function renderRequest(query: URLSearchParams): RenderRequest {
     view: direction.length === 3 && direction.every(Number.isFinite) && Math.hypot(...direction) > 0 ? [direction[0], direction[1], direction[2]] : named(view),
     color: query.get("color") ?? "",
     wires: query.get("wires") !== "0",
+    thickness: query.get("thickness") === "1",
     dark: query.get("dark") === "1",
     preset: query.get("preset") ?? "",
     transparent: query.get("transparent") === "1",
@@ -129,7 +131,8 @@ async function draw(request: RenderRequest, source: RecordedSource, send: Send):
   document.body.replaceChildren(host);
   const view = new View(host, store, new Page(), "a", display);
   await started(store);
-  display.change({ ...kPresets[request.preset], wires: request.wires, transparent: request.transparent });
+  const { wires, thickness, transparent } = request;
+  display.change({ ...kPresets[request.preset], wires, thickness, transparent });
   view.renderSize(request.width, request.height);
   const scene = store.side("a")?.scene;
   if (!scene) throw new Error("the recording has no scene");

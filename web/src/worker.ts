@@ -1,10 +1,11 @@
 // The script of the engine's worker: passes messages between the page (engine.ts) and a session (apps/engine/engine.cpp).
 import type { EngineParts } from "./engine";
 import type { Flagged } from "./host";
+import { bytesOf } from "./pack";
 import { unpackXz } from "./xz";
 
 interface Engine {
-  FS: { mkdirTree(folder: string): void; writeFile(path: string, text: string): void };
+  FS: { mkdirTree(folder: string): void; writeFile(path: string, content: string | Uint8Array): void };
   lengthBytesUTF8(text: string): number;
   stringToUTF8(text: string, place: number, most: number): void;
   _malloc(bytes: number): number;
@@ -98,7 +99,7 @@ async function open(parts: EngineParts): Promise<void> {
   const texts = JSON.parse(new TextDecoder().decode(await unpackXz(files))) as Record<string, string>;
   for (const [path, text] of Object.entries(texts)) {
     made.FS.mkdirTree(path.slice(0, path.lastIndexOf("/")));
-    made.FS.writeFile(path, text);
+    made.FS.writeFile(path, path.endsWith(".webp") ? bytesOf(text) : text);
   }
   if ("judge" in task) return void withText(made, task.judge, made._engine_judge);
   if (!withText(made, task.scene, made._engine_open)) return;

@@ -84,6 +84,7 @@ function addDisplay(folder: Folder, display: Display, views: () => View[]): void
   addField(folder, display, views);
   folder.add("wires", "Wires");
   folder.add("fill", "Fill");
+  folder.add("thickness", "Thickness of sheets");
   folder.add("obstacles", "Obstacles");
   folder.add("contacts", "Contact points");
   folder.add("shadows", "Shadows");

@@ -10,6 +10,7 @@ import { FibreLines } from "./fibres";
 import { kSkinPoint } from "./labels";
 import { vectorAt } from "./lens";
 import { makeFieldUniforms, makePinMaterial, makeSurfaceMaterial } from "./shading";
+import type { ThickSheets } from "./thickSheets";
 
 export interface Box {
   lower: Vec3;
@@ -53,13 +54,13 @@ function upload(attribute: THREE.BufferAttribute, array: THREE.TypedArray): void
 }
 
 // One per vertex: 1 in a sheet.
-function sheetFlags(geometry: Geometry, tets: number): THREE.BufferAttribute {
+function sheetFlags(geometry: Geometry, tets: number): Float32Array {
   const flags = new Float32Array(geometry.rest.length / 3);
   geometry.tet.forEach((element, t) => {
     if (element < tets) return;
     for (let c = 0; c < 3; ++c) flags[geometry.triangles[3 * t + c]] = 1;
   });
-  return new THREE.BufferAttribute(flags, 1);
+  return flags;
 }
 
 // Edges to draw: of the tube of a rod only its cross sections, which mark the segments. `rods`: its first element.
@@ -79,6 +80,7 @@ export class Body {
   readonly numbered: boolean; // whether some vertex has a user's number
   box: Box | null;
   hasPicture = false; // the first picture brings the normals
+  current: Float32Array; // positions of the vertices [m]
   private readonly positions: THREE.BufferAttribute;
   private readonly normals: THREE.BufferAttribute;
   private readonly values: THREE.BufferAttribute;
@@ -101,32 +103,33 @@ export class Body {
     bodyTets: readonly number[] = [],
     tets = Infinity, // number of tets; elements from there on are triangles of sheets, which have no inside
     sheet = Infinity, // number of triangles of sheets; elements after them are segments of rods
+    readonly solid: ThickSheets | null = null, // sheets as solids; null: without their thickness
   ) {
     this.bodyCount = bodyTets.length;
     this.bodies = this.bodyCount > 1 ? bodiesOf(geometry, bodyTets) : null;
-    const n = geometry.rest.length / 3;
+    const shown = solid?.positions ?? geometry.rest;
+    const n = shown.length / 3;
+    this.current = geometry.rest;
     this.edge = meanEdge(geometry);
     this.numbered = geometry.vertex.some((vertex) => vertex !== kSkinPoint);
     this.box = coarseBox(geometry.rest);
-    this.positions = new THREE.BufferAttribute(geometry.rest, 3);
+    this.positions = new THREE.BufferAttribute(shown, 3);
     this.normals = new THREE.BufferAttribute(new Int8Array(4 * n), 4, true);
     this.values = new THREE.BufferAttribute(new Float32Array(n), 1);
     for (const attribute of [this.positions, this.normals, this.values]) attribute.setUsage(THREE.DynamicDrawUsage);
-    this.mesh = new THREE.Mesh(this.shape(geometry.triangles, true), this.surface);
-    this.wires = new THREE.LineSegments(this.shape(wiresOf(geometry, tets + sheet), false), this.lines);
+    this.mesh = new THREE.Mesh(this.shape(solid?.triangles ?? geometry.triangles, true), this.surface);
+    const edges = wiresOf(geometry, tets + sheet);
+    this.wires = new THREE.LineSegments(this.shape(solid?.bothSides(edges) ?? edges, false), this.lines);
     this.pins = new THREE.Points(this.shape(new Uint32Array(0), false), this.pinMaterial);
     this.mesh.castShadow = this.mesh.receiveShadow = true;
     this.wires.renderOrder = 1;
     this.pins.renderOrder = 2;
     for (const object of [this.mesh, this.wires, this.pins]) object.frustumCulled = false;
-    if (geometry.tet.some((element) => element >= tets)) this.mesh.geometry.setAttribute("isSheet", sheetFlags(geometry, tets));
+    if (geometry.tet.some((element) => element >= tets))
+      this.mesh.geometry.setAttribute("isSheet", new THREE.BufferAttribute(this.perPoint(sheetFlags(geometry, tets)), 1));
     this.root.add(this.mesh, this.wires, this.pins, this.fibres);
     this.root.visible = false;
     this.root.matrixAutoUpdate = false;
-  }
-
-  get current(): Float32Array {
-    return this.positions.array as Float32Array;
   }
 
   get shading(): Int8Array {
@@ -134,16 +137,18 @@ export class Body {
   }
 
   show(picture: Pick<Picture, "positions" | "normals" | "values">): void {
-    upload(this.positions, picture.positions);
-    upload(this.normals, picture.normals);
-    if (picture.values) upload(this.values, picture.values);
+    this.solid?.show(picture);
+    this.current = picture.positions;
+    upload(this.positions, this.solid?.positions ?? picture.positions);
+    upload(this.normals, this.solid?.normals ?? picture.normals);
+    if (picture.values) this.showValues(picture.values);
     this.fibres.show(this.geometry.triangles, picture.positions);
     this.box = coarseBox(picture.positions) ?? this.box;
     this.hasPicture = this.root.visible = true;
   }
 
   showValues(values: Float32Array): void {
-    upload(this.values, values);
+    upload(this.values, this.perPoint(values));
   }
 
   apply(settings: DisplaySettings): void {
@@ -184,7 +189,7 @@ export class Body {
     this.uniforms.fieldShown.value = this.bodies !== null;
     this.surface.specular.setScalar(this.gloss);
     if (!this.bodies) return;
-    upload(this.values, this.bodies);
+    this.showValues(this.bodies);
     const colors = bodyColors(own, this.bodyCount);
     this.showMap(colors.join(), () => bodyTexels(colors));
     this.uniforms.fieldLow.value = 0;
@@ -227,12 +232,17 @@ export class Body {
     const size = Math.min(9, Math.max(4, 0.8 * edgePixels));
     this.pinMaterial.size = size;
     this.pinMaterial.color.set(pinColor);
-    this.lift.value = size * liftPerPixel;
+    const thickness = this.solid ? (this.solid.thickness / this.edge) * edgePixels : 0;
+    this.lift.value = (size + thickness) * liftPerPixel;
   }
 
   dispose(): void {
     disposeOf(this.root);
     this.uniforms.fieldMap.value?.dispose();
+  }
+
+  private perPoint(values: Float32Array): Float32Array {
+    return this.solid?.values(values) ?? values;
   }
 
   private shape(index: Uint32Array, shaded: boolean): THREE.BufferGeometry {

@@ -3,7 +3,7 @@ import * as THREE from "three";
 import { short } from "../numbers";
 import type { StepRow } from "../protocol";
 import { colorAt } from "./colorMaps";
-import { kBeforeObstacles } from "./obstacles";
+import { kAfterObstacles } from "./obstacles";
 import { makePinMaterial } from "./shading";
 import { valueText } from "./values";
 
@@ -43,11 +43,13 @@ export class ContactDots extends THREE.Group {
 
   constructor() {
     super();
-    const points = [THREE.GreaterDepth, THREE.LessEqualDepth].map((depthFunc, i) => {
+    // The stencil marks where no obstacle covers a point, before the bodies are drawn.
+    const mark = { transparent: false, colorWrite: false, stencilWrite: true, stencilRef: 1, stencilZPass: THREE.ReplaceStencilOp };
+    const hidden = { depthFunc: THREE.GreaterDepth, opacity: kHidden, stencilWrite: true, stencilRef: 1, stencilFunc: THREE.EqualStencilFunc };
+    const points = [mark, hidden, {}].map((properties, i) => {
       const material = makePinMaterial(this.lift);
-      Object.assign(material, { size: kSize, vertexColors: true, depthWrite: false, depthFunc, opacity: i === 0 ? kHidden : 1 });
-      const dots = new THREE.Points(this.geometry, material);
-      return Object.assign(dots, { frustumCulled: false, renderOrder: i === 0 ? kBeforeObstacles : 4 });
+      Object.assign(material, { size: kSize, vertexColors: true, depthWrite: false }, properties);
+      return Object.assign(new THREE.Points(this.geometry, material), { frustumCulled: false, renderOrder: i === 0 ? kAfterObstacles : 4 });
     });
     this.materials = points.map(({ material }) => material);
     this.add(...points);

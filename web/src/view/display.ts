@@ -10,6 +10,7 @@ import type { ViewTool } from "./viewTool";
 
 export const kDefaults = {
   fill: true,
+  thickness: false, // draws sheets as solids
   wires: true,
   wiresOnTop: false,
   smooth: true,

@@ -10,12 +10,14 @@ import type { Style } from "./overlay";
 import type { Surface } from "./picking";
 import { extremes, RunningRange, type ColorRange } from "./ranges";
 import type { Stage } from "./stage";
+import { halfThickness, ThickSheets } from "./thickSheets";
 
 export class Figure {
   body: Body | null = null; // null without a stage
   private valuesOf = ""; // field of the body's values
   private difference: Float32Array | null = null; // distance from the other side [m]
   private lost = false;
+  private isThick = false; // the body has sheets as solids
   private readonly pressures = new RunningRange(); // of the contact points [Pa]
 
   constructor(
@@ -44,9 +46,13 @@ export class Figure {
 
   takeGeometry(): boolean {
     const { side, stage } = this;
-    if (!stage || !side?.geometry || this.body?.geometry === side.geometry) return false;
+    const { thickness } = this.display.settings;
+    if (!stage || !side?.geometry || (this.body?.geometry === side.geometry && this.isThick === thickness)) return false;
+    this.isThick = thickness;
     stage.place(side.scene); // show() below removes the present body
-    this.body = new Body(side.geometry, side.scene.body_tets, side.scene.tets, side.scene.triangles);
+    const half = thickness ? halfThickness(side.geometry, side.scene) : null;
+    const solid = half && new ThickSheets(side.geometry.triangles, half);
+    this.body = new Body(side.geometry, side.scene.body_tets, side.scene.tets, side.scene.triangles, solid);
     stage.show(this.body);
     this.body.setPins(side.pins);
     this.body.setFibres(side.fibres);
@@ -100,6 +106,7 @@ export class Figure {
   }
 
   apply(style: Style): void {
+    this.takeGeometry();
     this.takeDifference();
     this.body?.apply(this.display.settings);
     this.stage?.apply(this.display.settings, style);

@@ -7,7 +7,7 @@ import { dot, minus } from "./lens";
 import { kGroundRadius, makeGroundMaterial } from "./shading";
 
 const kColor = "#a7a39b";
-export const kBeforeObstacles = -3; // order of what obstacles cover although bodies do not
+export const kAfterObstacles = -2; // order of what obstacles cover although bodies do not, which are drawn later
 
 // Two unit vectors along a plane, the first as horizontal as possible.
 export function planeAxes(normal: Vec3, up: Vec3): [Vec3, Vec3] {
@@ -70,8 +70,6 @@ export class ObstacleBodies extends THREE.Group {
     color: kColor,
     side: THREE.DoubleSide,
     clipShadows: true,
-    transparent: true, // drawn in the order of renderOrder
-    forceSinglePass: true,
   });
   private grounds: Ground[] = [];
 
@@ -98,7 +96,7 @@ export class ObstacleBodies extends THREE.Group {
       shape.computeVertexNormals(); // those of the triangles, which share no corners
       const mesh = new THREE.Mesh(shape, this.material);
       mesh.castShadow = mesh.receiveShadow = true;
-      mesh.renderOrder = kBeforeObstacles + 1;
+      mesh.renderOrder = kAfterObstacles - 1;
       this.surfaces.add(mesh);
     }
   }

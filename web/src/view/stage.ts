@@ -44,7 +44,7 @@ export class Stage {
   private readonly lit = new THREE.Sphere(new THREE.Vector3(), 0); // region that the shadow map covers
 
   constructor(canvas: HTMLCanvasElement) {
-    this.renderer = new THREE.WebGLRenderer({ canvas, alpha: true, antialias: true, powerPreference: "high-performance" });
+    this.renderer = new THREE.WebGLRenderer({ canvas, alpha: true, antialias: true, stencil: true, powerPreference: "high-performance" });
     this.renderer.localClippingEnabled = true;
     Object.assign(this.renderer.shadowMap, { enabled: true, autoUpdate: false });
     for (const light of [this.sun, this.dome]) {

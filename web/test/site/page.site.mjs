@@ -51,6 +51,18 @@ test("the address opens a page of the lecture", async () => {
   await opened.close();
 });
 
+test("scenes have pictures, two beside each other on a phone", async () => {
+  const opened = await openSite(places["a file"], "bunny", { size: [390, 844] });
+  await opened.page.keyboard.press("Shift+O");
+  const pictures = opened.page.locator(".gallery .scene img");
+  await pictures.first().waitFor();
+  const shown = await pictures.evaluateAll((all) => Promise.all(all.map((image) => image.decode().then(() => image.naturalWidth))));
+  assert.ok(shown.length >= 20 && shown.every((width) => width === 280), shown.join());
+  assert.equal((await pictures.nth(0).boundingBox()).y, (await pictures.nth(1).boundingBox()).y);
+  await keepPicture(opened.page, "site_gallery");
+  await opened.close();
+});
+
 test("no formula is cut off on a phone", async () => {
   const opened = await openSite(`${places["a file"]}#lecture/33`, "33_mouse", { size: [390, 844] });
   const formulas = opened.page.locator(".lesson .formula");
