@@ -81,7 +81,7 @@ class Pictures(CommandLine):
         self.aspic("render", "run", "-o", "a.png", "--step", "0", "--size", "144x108", "--samples", "8", *options, timeout=300)
         return (self.folder / "a.png").read_bytes()
 
-    def test_pictures_look_like_the_stored_ones(self):
+    def test_pictures_match_the_stored_ones(self):
         for name, options in PICTURES.items():
             png, path = self.picture("--preset", name, *options), STORED / f"{name}.png"
             if "ASPIC_UPDATE_PICTURES" in os.environ:
