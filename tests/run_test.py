@@ -30,6 +30,15 @@ class Run(CommandLine):
         self.write("box.mesh", box_mesh())
         self.assertIn("note:", self.aspic("run", "box.mesh", "--steps", "2").stdout)
 
+    def test_the_summary_omits_pins_of_twist(self):
+        self.write("rod.toml", '[time]\nstep = 0.01\nduration = 0.02\n[[body]]\nname = "rod"\nrod = { radius = 1e-3 }\n'
+                   'shape = { line = { to = [0.3, 0, 0], size = 0.1 } }\nmaterial = { young = 1e7, poisson = 0.3 }\n'
+                   '[[body.pin]]\nwhere = "X < 0.15"\n')
+        text = self.aspic("run", "rod.toml", "--set", "output.ply=true").stdout
+        self.assertIn("rod.pin1 exerts", text)
+        self.assertNotIn("twist exerts", text)
+        self.assertIn(b"element edge 3\n", (self.folder / "out/rod/frames/skin_rod_000001.ply").read_bytes())
+
     def test_the_summary_names_inverted_tets(self):
         self.write("box.mesh", box_mesh())
         upside_down = ["--set", "material.model=neo_hookean", "--set", 'deform.displacement=["-1.5*X",0,0]']
@@ -308,6 +317,24 @@ material = { young = 1e5, poisson = 0.3, density = 300 }
                               capture_output=True, text=True, timeout=60)
         self.assertEqual(done.returncode, 2)
         self.assertIn("apt-get install chromium", done.stderr)
+
+
+class Setup(CommandLine):
+    """`build` of tools/setup.sh, which ./run calls, with a fake ninja."""
+
+    def build(self, seconds, code=0):
+        for name, text in ("ninja", f"/bin/sleep {seconds}\nexit {code}\n"), ("sleep", "/bin/sleep 0.5\n"):
+            (self.folder / self.write(name, "#!/bin/sh\n" + text)).chmod(0o755)
+        script = f"root={self.folder}; . {pathlib.Path(__file__).parent.parent}/tools/setup.sh; build all"
+        return subprocess.run(["sh", "-c", script], env={"PATH": f"{self.folder}:/usr/bin:/bin"}, capture_output=True,
+                              text=True, timeout=60)
+
+    def test_only_long_builds_are_announced(self):
+        self.assertEqual(self.build(0).stderr, "")
+        self.assertIn("Building", self.build(2).stderr)
+        failed = self.build(0, code=1)
+        self.assertEqual(failed.returncode, 1)
+        self.assertIn("the build failed", failed.stderr)
 
 
 class Interruption(CommandLine):

@@ -122,15 +122,17 @@ configure() {
     die "the build could not be configured"
 }
 
-# build TARGETS: on a terminal ninja shows one line of progress, in a pipe nothing unless it fails.
+# build TARGETS: on a terminal ninja shows one line of progress; in a pipe a sentence if it takes long.
 build() {
-  ! ninja -C "$build_dir" -n "$@" 2>/dev/null | grep -q 'no work to do' || return 0
   if [ -t 2 ]; then
     ninja -C "$build_dir" "$@" >&2 || die "the build failed"
-  else
-    say "Building (the first time takes a few minutes) ..."
-    logged build ninja -C "$build_dir" "$@" || die "the build failed"
+    return
   fi
+  (sleep 5 >/dev/null 2>&1 && say "Building (the first time takes a few minutes) ...") &
+  notice=$!
+  if logged build ninja -C "$build_dir" "$@"; then built=1; else built=; fi
+  kill "$notice" 2>/dev/null || true
+  [ -n "$built" ] || die "the build failed"
 }
 
 # build_package FOLDER TARGETS...: a package that stands on the core; `build_dir` becomes its build folder.

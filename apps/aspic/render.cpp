@@ -180,9 +180,11 @@ Chromium draws them with the page of aspic view and aspic report, on the CPU if 
   command->add_option("--step", arguments->step, "Draw one picture, of the frame nearest to this step")
       ->check(CLI::Range(0, 1000000000));
   command
-      ->add_option("--preset", arguments->preset,
-                   "paper: white, orthographic, with a scale bar; talk: dark, with large text; both without wires")
-      ->check(CLI::IsMember({"paper", "talk"}));
+      ->add_option(
+          "--preset", arguments->preset,
+          "paper: white, orthographic, with a scale bar; talk: dark, with large text; plain: no texts; tissue: "
+          "plain, as skin; all without wires")
+      ->check(CLI::IsMember({"paper", "talk", "plain", "tissue"}));
   command->add_flag("--wires,!--no-wires", arguments->wires, "Draw edges of the mesh, on without a preset");
   command->add_flag("--thickness", arguments->thickness, "Draw sheets with their thickness");
   command->add_flag("--dark", arguments->dark, "Use a dark background");

@@ -192,9 +192,12 @@ void print_start(std::FILE* stream, const RunArguments& arguments, const Scene& 
   std::fflush(stream);
 }
 
+// Those of prescribed twist, which exert no force, are empty.
 std::vector<std::string> pin_names(const Model& model) {
   std::vector<std::string> names;
-  for (const Pin& pin : model.pins) names.push_back(pin.name);
+  const auto is_vertex = [&](int row) { return row < model.mesh.vertex_count(); };
+  for (const Pin& pin : model.pins)
+    names.push_back(std::any_of(pin.vertices.begin(), pin.vertices.end(), is_vertex) ? pin.name : "");
   return names;
 }
 

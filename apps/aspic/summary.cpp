@@ -135,12 +135,18 @@ constexpr size_t kMaxReactions = 6;
 
 void print_reactions(std::FILE* stream, const RunTotals& totals, const RunEnd& end) {
   const auto vector = [](const Vec3d& v) { return fmt::format("({:.4g}, {:.4g}, {:.4g})", v[0], v[1], v[2]); };
-  const size_t count = std::min(totals.reactions.size(), end.pins.size());
-  for (size_t i = 0; i < std::min(count, kMaxReactions); ++i)
+  size_t printed = 0, more = 0;
+  for (size_t i = 0; i < std::min(totals.reactions.size(), end.pins.size()); ++i) {
+    if (end.pins[i].empty()) continue;
+    if (printed == kMaxReactions) {
+      ++more;
+      continue;
+    }
     fmt::print(stream, "{}  {} exerts {} N, {} N m about the origin in the last step\n",
-               i == 0 ? "reactions" : "         ", end.pins[i], vector(totals.reactions[i].force),
+               printed++ == 0 ? "reactions" : "         ", end.pins[i], vector(totals.reactions[i].force),
                vector(totals.reactions[i].moment));
-  if (count > kMaxReactions) fmt::print(stream, "           {} more pins: steps.csv\n", count - kMaxReactions);
+  }
+  if (more > 0) fmt::print(stream, "           {} more pins: steps.csv\n", more);
 }
 
 }  // namespace

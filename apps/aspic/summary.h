@@ -59,7 +59,7 @@ struct RunEnd {
   std::string better_scheme;             // integrator that loses less energy of smooth motion; empty: none
   std::optional<InvertedTets> inverted;  // in the last state, if it is known
   std::uint64_t state_hash = 0;          // hash of the last state
-  std::vector<std::string> pins;         // names of RunTotals::reactions
+  std::vector<std::string> pins;         // names of RunTotals::reactions; empty: no force
   std::filesystem::path directory;
   std::string program = "aspic";  // that continues the run
 };

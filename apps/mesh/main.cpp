@@ -17,6 +17,7 @@
 #include "base/error.h"
 #include "base/formatted.h"
 #include "base/free_memory.h"
+#include "base/number_chars.h"
 #include "base/printable.h"
 #include "input.h"
 #include "io/mesh_file.h"
@@ -264,7 +265,10 @@ int main(int argc, char** argv) {
   aspic::Arguments arguments;
   aspic::declare(app, arguments);
   try {
-    app.parse(argc, argv);
+    std::vector<std::string> words;
+    for (int i = argc - 1; i > 0; --i)  // the order that CLI11 expects
+      words.push_back(argv[i][0] == '-' && argv[i][1] == '.' ? aspic::with_leading_zeros(argv[i]) : argv[i]);
+    app.parse(std::move(words));
     aspic::run(arguments);
     return aspic::kDone;
   } catch (const CLI::ParseError& error) {

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <string>
+#include <string_view>
 #include <system_error>
 
 namespace aspic {
@@ -73,6 +74,20 @@ std::to_chars_result write(char* first, char* last, T value, int most, T (*read)
 }
 
 }  // namespace
+
+std::string with_leading_zeros(const std::string& text) {
+  constexpr std::string_view kBefore = "-+[,= ", kAfter = "eE,]} ";
+  std::string result;
+  for (size_t i = 0; i < text.size(); ++i) {
+    const bool begins = text[i] == '.' && (i == 0 || kBefore.find(text[i - 1]) != kBefore.npos);
+    const size_t end = text.find_first_not_of("0123456789", i + 1);
+    const bool is_number =
+        i + 1 < text.size() && is_digit(text[i + 1]) && (end == text.npos || kAfter.find(text[end]) != kAfter.npos);
+    if (begins && is_number) result += '0';
+    result += text[i];
+  }
+  return result;
+}
 
 std::from_chars_result read_number(const char* first, const char* last, double& value) {
   const char* start = first != last && *first == '-' ? first + 1 : first;

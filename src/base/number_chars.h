@@ -2,6 +2,7 @@
 // and writes these.
 #pragma once
 #include <charconv>
+#include <string>
 #include <type_traits>
 
 namespace aspic {
@@ -10,6 +11,9 @@ namespace aspic {
 std::from_chars_result read_number(const char* first, const char* last, double& value);
 std::to_chars_result write_number(char* first, char* last, double value);
 std::to_chars_result write_number(char* first, char* last, float value);
+
+// Writes the zero before points that begin a number: "[-.5, 1]" becomes "[-0.5, 1]".
+std::string with_leading_zeros(const std::string& text);
 
 // As std::from_chars.
 template <class T>

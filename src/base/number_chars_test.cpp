@@ -95,5 +95,12 @@ TEST(NumberChars, ReadsLikeTheStandardLibrary) {
   }
 }
 
+TEST(NumberChars, PointsThatBeginANumberGetAZero) {
+  EXPECT_EQ(with_leading_zeros("-.5,.25,1.5"), "-0.5,0.25,1.5");
+  EXPECT_EQ(with_leading_zeros("[.1, +.2e-3]"), "[0.1, +0.2e-3]");
+  for (const char* text : {".", "./.5.obj", "a.5", "1..5", ".5.obj", "-", ""})
+    EXPECT_EQ(with_leading_zeros(text), text);
+}
+
 }  // namespace
 }  // namespace aspic

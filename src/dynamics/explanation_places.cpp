@@ -1,5 +1,7 @@
 #include "dynamics/explanation_places.h"
 #include "base/formatted.h"
+#include "math/svd3.h"
+#include "mesh/elements.h"
 #include "mesh/tet_nodes.h"
 #include "mesh/vertices.h"
 
@@ -46,6 +48,20 @@ std::string tet_name(const Model& model, int tet) {
   if (const int triangle = tet - model.mesh.tet_count(); triangle >= 0)
     return named(model, "triangle", triangle, &BodyRange::first_triangle, &BodyRange::triangle_count);
   return named(model, "tet", model.numbering.tet.to_user(tet), &BodyRange::first_tet, &BodyRange::tet_count);
+}
+
+WorstTriangle overstretched(const Model& model, std::span<const double> x) {
+  const TetMesh& mesh = model.mesh;
+  const auto n = static_cast<size_t>(mesh.element_count());
+  TetFields fields{std::vector<double>(n), std::vector<double>(n), std::vector<double>(6 * n), std::vector<double>(n)};
+  for (const auto& V : model.elasticity) V->evaluate(x, fields);
+  WorstTriangle worst;
+  for (int t = mesh.tet_count(); t < mesh.first_segment(); ++t) {
+    if (std::isfinite(fields.energy_density[t])) continue;
+    const double stretch = svd3(deformation_gradient(mesh, t, x)).s[0];
+    if (stretch > worst.stretch) worst = {t, stretch};
+  }
+  return worst;
 }
 
 WorstTet most_compressed(const TetMesh& mesh, std::span<const double> x) {

@@ -20,6 +20,13 @@ std::string point_text(std::span<const double> x, int vertex);
 std::string vertex_name(const Model& model, int vertex);
 std::string tet_name(const Model& model, int tet);
 WorstTet most_compressed(const TetMesh& mesh, std::span<const double> x);
+struct WorstTriangle {
+  int element = -1;
+  double stretch = 0;  // larger principal stretch
+};
+
+// Returns the most stretched triangle with infinite energy.
+WorstTriangle overstretched(const Model& model, std::span<const double> x);
 std::string compressed_place(const Model& model, std::span<const double> x);  // describes that tet
 
 }  // namespace aspic::places

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "contact/barrier.h"
+#include "dynamics/explanation_places.h"
 #include "dynamics/incremental_potential.h"
 #include "energy/dense_energy.h"
 #include "math/vectors.h"
@@ -76,10 +77,11 @@ class StepCheck {
         pins_(model_.pins, start_),
         E_(model_, pins_),
         edge_(mean_edge(model_.mesh)),
-        tolerance_(tolerance) {
+        tolerance_(tolerance),
+        time_(state_.time + simulation.options().h) {
     const double h = simulation.options().h;
     const bool is_static = simulation.integrator().is_static();
-    const StepContext context{state_.q, is_static ? 0 : h, state_.time + h};
+    const StepContext context{state_.q, is_static ? 0 : h, time_};
     std::vector<double> predicted = state_.q;
     if (!is_static)
       for (size_t i = 0; i < predicted.size(); ++i) predicted[i] += h * state_.qdot[i];
@@ -119,7 +121,7 @@ class StepCheck {
       all.push_back(std::move(strained));
       break;
     }
-    if (std::vector<double> q = touching(); !q.empty()) all.push_back({kTouching, std::move(q)});
+    if (std::vector<double> q = touching(); !q.empty() && is_finite(q)) all.push_back({kTouching, std::move(q)});
     return all;
   }
 
@@ -157,9 +159,28 @@ class StepCheck {
   }
   bool is_finite(const std::vector<double>& q) { return std::isfinite(E_.value(q)); }
 
+  // Describes where a surface is at or behind an obstacle; empty: nowhere.
+  std::string overlap(const std::vector<double>& q) const {
+    if (!model_.contact) return "";
+    const std::vector<Vec3d> x = model_.contact->points(q, time_);
+    const auto stencils = model_.contact->stencils(q, time_);
+    for (const ContactStencil& stencil : *stencils)
+      if (!std::isfinite(stencil.value(x)))
+        return model_.contact->mesh().pair_name(stencil.parts) + " overlap at " +
+               places::point_text(x[stencil.point[0]].a, 0) + ", t = " + places::text(time_) + " s";
+    return "";
+  }
+
   void check(const std::string& term, const NamedState& at, const Differentiable& f) {
-    const DerivativeCheckOptions options{
-        .length = edge_, .tolerance = tolerance_, .negligible = negligible_, .fixed = {}};
+    check(term, at, f, {.length = edge_, .tolerance = tolerance_, .negligible = negligible_, .fixed = {}});
+  }
+  void check(const std::string& term, const NamedState& at, const Differentiable& f,
+             const DerivativeCheckOptions& options) {
+    if (!std::isfinite(f.value(at.q))) {
+      const std::string place = overlap(at.q);
+      results_.push_back({term, at.name, {}, place.empty() ? "the energy is not finite" : place});
+      return;
+    }
     results_.push_back({term, at.name, check_derivatives(f, at.q, options)});
   }
 
@@ -176,10 +197,9 @@ class StepCheck {
   }
 
   void check_E(const NamedState& at) {
-    DerivativeCheckOptions options{.length = edge_, .tolerance = tolerance_, .fixed = std::vector<char>(at.q.size())};
-    for (size_t i = 0; i < at.q.size(); ++i)
-      options.fixed[i] = pins_.holds(static_cast<int>(i / 3), static_cast<int>(i % 3));
-    results_.push_back({"E", at.name, check_derivatives(differentiable(E_), at.q, options)});
+    std::vector<char> fixed(at.q.size());
+    for (size_t i = 0; i < at.q.size(); ++i) fixed[i] = pins_.holds(static_cast<int>(i / 3), static_cast<int>(i % 3));
+    check("E", at, differentiable(E_), {.length = edge_, .tolerance = tolerance_, .fixed = std::move(fixed)});
   }
 
   // 1/2 (q - q~)' M (q - q~)
@@ -214,7 +234,7 @@ class StepCheck {
   std::vector<double> start_;
   Pins pins_;
   IncrementalPotential E_;
-  double edge_, tolerance_, inertia_ = 1, negligible_ = 0;
+  double edge_, tolerance_, time_, inertia_ = 1, negligible_ = 0;
   std::vector<double> predicted_;
   std::vector<TermDerivatives> results_;
 };

@@ -16,6 +16,8 @@ struct TermDerivatives {
   std::string term;   // name in Simulation::potential_names() or of a damping term, "inertia", or "E"
   std::string state;  // "start", "rest", "deformed" or "touching"
   DerivativeReport report;
+  std::string unchecked = {};  // why the term was not checked: the state is outside of its domain; empty: it was
+  bool is_wrong() const { return unchecked.empty() && !report.passed(); }
 };
 
 // Checks three states: the current one; near rest, with every vertex moved by a hundredth of an edge; and stretched,

@@ -245,7 +245,7 @@ bool has_lines_only(const std::string& path) {
 void write_line_mesh(const std::string& path, const TetMesh& mesh) {
   ASPIC_CHECK(are_indices_valid(mesh.rods, mesh.vertex_count()));
   check_vertices(path, mesh.rest);
-  write_file(path, obj_text_of_lines(mesh));
+  write_file(path, fs::path(path).extension() == ".ply" ? ply_bytes_of_lines(mesh) : obj_text_of_lines(mesh));
 }
 
 TriMesh read_tri_mesh(const std::string& path) {

@@ -37,7 +37,7 @@ TetMesh read_line_mesh(const std::string& path);
 
 // Whether the file has lines but neither tets nor triangles. Throws InvalidInput like read_mesh().
 bool has_lines_only(const std::string& path);
-// Writes the vertices and rods of a mesh as an OBJ file. Throws InvalidInput like write_mesh().
+// Writes the vertices and rods of a mesh as an OBJ or PLY file. Throws InvalidInput like write_mesh().
 void write_line_mesh(const std::string& path, const TetMesh& mesh);
 
 enum class FileEncoding { ascii, binary };  // formats of text only reject binary

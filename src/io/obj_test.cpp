@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "base/error.h"
+#include "io/atomic_file.h"
 #include "io/folder_test.h"
 #include "io/mesh_file.h"
 
@@ -109,6 +110,17 @@ TEST(ObjLines, AreReadBackAsWritten) {
   for (size_t v = 0; v < 3; ++v)
     for (int k = 0; k < 3; ++k) EXPECT_EQ(again.rest[v][k], rod.rest[v][k]);
   EXPECT_EQ(again.rods, rod.rods);
+}
+
+TEST(PlyLines, AreEdges) {
+  const TestFolder folder;
+  TetMesh rod{.rest = {{{0, 0, 0}}, {{1, 0, 0}}, {{1, 1, 0}}}, .tets = {}, .region = {}};
+  rod.rods = {{2, 0}, {0, 1}};
+  write_line_mesh(folder / "rod.ply", rod);
+  const std::string bytes = read_file(folder / "rod.ply");
+  EXPECT_THAT(bytes, HasSubstr("element vertex 3\n"));
+  EXPECT_THAT(bytes, HasSubstr("element edge 2\nproperty int vertex1\nproperty int vertex2\nend_header\n"));
+  EXPECT_THAT(bytes, testing::EndsWith(std::string("\2\0\0\0\0\0\0\0\0\0\0\0\1\0\0\0", 16)));
 }
 
 }  // namespace

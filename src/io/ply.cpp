@@ -252,4 +252,14 @@ std::string ply_bytes(const TriMesh& mesh, FileEncoding encoding) {
   return out;
 }
 
+std::string ply_bytes_of_lines(const TetMesh& mesh) {
+  std::string out = "ply\nformat binary_little_endian 1.0\ncomment Aspic\nelement vertex " +
+                    std::to_string(mesh.rest.size()) +
+                    "\nproperty double x\nproperty double y\nproperty double z\nelement edge " +
+                    std::to_string(mesh.rods.size()) + "\nproperty int vertex1\nproperty int vertex2\nend_header\n";
+  for (const Vec3d& vertex : mesh.rest) append_bytes(out, vertex);
+  for (const Segment& segment : mesh.rods) append_bytes(out, segment);
+  return out;
+}
+
 }  // namespace aspic

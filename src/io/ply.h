@@ -20,5 +20,6 @@ struct PaintedSurface {
 PaintedSurface parse_painted_ply(const std::string& file, std::string_view contents, const std::string& attribute);
 
 std::string ply_bytes(const TriMesh& mesh, FileEncoding encoding);
+std::string ply_bytes_of_lines(const TetMesh& mesh);  // the rods of a mesh as edges
 
 }  // namespace aspic

@@ -53,6 +53,7 @@ class Explainer {
     switch (report_.status) {
       case Status::undefined:
         if (!simulation_.integrator().is_implicit) return blow_up();
+        if (const Explanation pins = stretched_by_pins(); !pins.cause.empty()) return pins;
         return std::isfinite(report_.objective) && report_.iterations > 0 ? undefined_end() : undefined_start();
       case Status::stuck:
         return stuck();
@@ -161,6 +162,17 @@ class Explainer {
         "energy there",
         tet_name(model_, worst.tet) + ", whose corners are all pinned: " + text(worst.det_F) + " of its volume",
         "material.model = \"stable_neo_hookean\", which tolerates it, or pins that stop earlier"};
+  }
+
+  // Empty unless the pins at the end of the step stretch a triangle beyond the limit of its sheet.
+  Explanation stretched_by_pins() const {
+    if (model_.mesh.sheet.empty()) return {};
+    const WorstTriangle worst = overstretched(model_, placed());
+    if (!(worst.stretch > 1)) return {};
+    return {
+        "the pins pull a sheet beyond the limit of its stretch, where its energy is infinite",
+        tet_name(model_, worst.element) + " would be stretched by " + text(worst.stretch) + ", more than shell.limit",
+        "raise shell.limit, move the pins less far, or " + smaller_steps()};
   }
 
   Explanation undefined_start() const {

@@ -26,8 +26,9 @@ std::vector<float> flat(const std::vector<Vec3d>& points) {
   return numbers;
 }
 
-void write_obj(const std::filesystem::path& path, const TriMesh& mesh, const std::vector<Segment>& segments) {
-  if (segments.empty()) return write_mesh(path, mesh);
+void write_skin(const std::filesystem::path& path, const TriMesh& mesh, const std::vector<Segment>& segments) {
+  if (segments.empty())
+    return write_mesh(path, mesh, path.extension() == ".ply" ? FileEncoding::binary : FileEncoding::ascii);
   TetMesh lines{.rest = mesh.vertices, .tets = {}, .region = {}};
   lines.rods = segments;
   write_line_mesh(path, lines);
@@ -48,7 +49,7 @@ RunSkins RunSkins::create(const RunLayout& layout, const Scene& scene) {
   for (size_t i = 0; i < skins.skins_.size(); ++i) {
     if (!skins.output_.pc2 && !skins.output_.usd) break;
     const TriMesh& rest = skins.skins_[i].rest;
-    write_obj(layout.skin_rest(skins.names_[i]), rest, skins.skins_[i].segments);
+    write_skin(layout.skin_rest(skins.names_[i]), rest, skins.skins_[i].segments);
     skins.caches_.push_back(Pc2File::create(layout.skin_cache(skins.names_[i]), rest.vertex_count()));
   }
   return skins;
@@ -58,7 +59,7 @@ RunSkins RunSkins::resume(const RunLayout& layout, const Scene& scene, int frame
   RunSkins skins(layout, scene);
   for (size_t i = 0; i < skins.skins_.size(); ++i) {
     if (!skins.output_.pc2 && !skins.output_.usd) break;
-    write_obj(layout.skin_rest(skins.names_[i]), skins.skins_[i].rest, skins.skins_[i].segments);
+    write_skin(layout.skin_rest(skins.names_[i]), skins.skins_[i].rest, skins.skins_[i].segments);
     skins.caches_.push_back(
         Pc2File::resume(layout.skin_cache(skins.names_[i]), skins.skins_[i].rest.vertex_count(), frames));
   }
@@ -72,8 +73,8 @@ void RunSkins::add_frame(int frame, std::span<const double> q) {
     if (!caches_.empty()) caches_[i].append(x_);
     if (!output_.obj && !output_.ply) continue;
     const TriMesh mesh = moved(skins_[i].rest, x_);
-    if (output_.obj) write_obj(layout_.skin_frame(names_[i], frame, ".obj"), mesh, skins_[i].segments);
-    if (output_.ply) write_mesh(layout_.skin_frame(names_[i], frame, ".ply"), mesh, FileEncoding::binary);
+    if (output_.obj) write_skin(layout_.skin_frame(names_[i], frame, ".obj"), mesh, skins_[i].segments);
+    if (output_.ply) write_skin(layout_.skin_frame(names_[i], frame, ".ply"), mesh, skins_[i].segments);
   }
 }
 

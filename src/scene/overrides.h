@@ -13,7 +13,8 @@ namespace aspic {
 void apply_override(Table& document, const std::string& text);
 
 // For arguments of a program: inserts --set before each further KEY=VALUE, so that `--set A=1 B=2` becomes
-// `--set A=1 --set B=2`. The name of an existing file is no assignment.
+// `--set A=1 --set B=2`. The name of an existing file is no assignment. Numbers such as -.5, which look like
+// options, become -0.5.
 std::vector<std::string> spread_assignments(const std::vector<std::string>& arguments);
 
 // Returns the name of a body: given, or the stem of its mesh file, or body1, body2, ...

@@ -107,6 +107,19 @@ TEST(SceneContact, DerivativesAreCheckedFromAStartInTouch) {
   EXPECT_EQ(checked, 1);
 }
 
+TEST(SceneContact, DerivativesAreNotCheckedBehindAnObstacle) {
+  const Scene scene = load(kCube + "[[obstacle]]\nname = \"floor\"\nplane = { origin = [0, -0.1, 0] }\n" +
+                           "motion = { linear = { velocity = [0, 100, 0] } }\n[contact]\n");
+  int unchecked = 0;
+  for (const TermDerivatives& t : check_step_derivatives(scene.simulation)) {
+    EXPECT_FALSE(t.is_wrong()) << t.term << ' ' << t.state;
+    if (t.unchecked.empty()) continue;
+    EXPECT_THAT(t.unchecked, testing::MatchesRegex("cube and floor overlap at \\(.*\\) m, t = .* s"));
+    ++unchecked;
+  }
+  EXPECT_EQ(unchecked, 2);  // contact and E
+}
+
 TEST(SceneContact, RejectsBadInput) {
   EXPECT_THAT(refusal(kCube + kFloor + "motion = { rotate = { axis = [0, 1, 0], rate_deg = 9 } }\n"),
               HasSubstr("capsules do not rotate"));

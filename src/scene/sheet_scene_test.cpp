@@ -14,6 +14,7 @@
 #include "mesh/elements.h"
 #include "mesh/self_intersection.h"
 #include "mesh/surface.h"
+#include "results/explanation.h"
 #include "results/run_directory.h"
 #include "scene/scene_cases_test.h"
 
@@ -297,6 +298,21 @@ TEST(SheetScene, CreasesLoseEnergyAndRestoreWithTheSameBits) {
   EXPECT_EQ(scene.simulation.state_hash(), hash);
   for (const TermDerivatives& of : check_step_derivatives(scene.simulation, 1e-6))
     EXPECT_TRUE(of.report.passed()) << of.term << " " << of.state;
+}
+
+TEST(SheetScene, PinsBeyondTheLimitAreNamed) {
+  Scene scene = load(
+      "gravity = [0, 0, 0]\n[time]\nstep = 0.1\nduration = 0.1\n[[body]]\nname = \"sheet\"\n"
+      "shape = { rectangle = { width = 0.4, height = 0.4, size = 0.1 } }\n"
+      "shell = { thickness = 5e-4, limit = 1.1 }\nmaterial = { young = 1e6, poisson = 0.3 }\n"
+      "[[body.pin]]\nwhere = \"X < -0.19\"\n[[body.pin]]\nwhere = \"X > 0.19\"\n"
+      "motion = { linear = { velocity = [1, 0, 0] } }\n");
+  const StepReport report = scene.simulation.step();
+  ASSERT_EQ(report.status, Status::undefined);
+  const Explanation why = explain(scene.simulation, report);
+  EXPECT_THAT(why.cause, HasSubstr("beyond the limit of its stretch"));
+  EXPECT_THAT(why.place, testing::ContainsRegex("triangle [0-9]+ would be stretched by .*, more than shell.limit"));
+  EXPECT_THAT(why.remedy, HasSubstr("raise shell.limit"));
 }
 
 // A unit square of two triangles with texture coordinates of a square whose side is .9, one of them mirrored.

@@ -123,7 +123,10 @@ Table read_toml(const std::string& text, const std::string& source) {
     const toml::table document = toml::parse(text, source);
     return std::move(convert(document, name).table());
   } catch (const toml::parse_error& e) {
-    throw InvalidInput(to_string(place_of(e.source(), name)) + ": " + std::string(e.description()));
+    const std::string reason(e.description());
+    const bool is_number = reason.find("parsing floating-point") != std::string::npos;
+    throw InvalidInput(to_string(place_of(e.source(), name)) + ": " + reason +
+                       (is_number ? "; write digits before and after the point: 0.5, 5.0" : ""));
   }
 }
 

@@ -3,7 +3,7 @@ import { unpacked } from "./pack";
 import type { Command, Obstacle, Picture, Query, State, TextReply, Vec3, VertexReply } from "./protocol";
 import { carried, normalsOf, type RecordedSurface, Recording } from "./recording";
 import type { Incoming, Source } from "./source";
-import { type Box, boxOf } from "./view/body";
+import { boxOf } from "./view/body";
 import { length, minus, vectorAt } from "./view/lens";
 import { extremes } from "./view/ranges";
 
@@ -14,9 +14,19 @@ export interface Pulse {
 }
 const kScreen: Pulse = { now: () => performance.now(), next: (callback) => requestAnimationFrame(callback) };
 
+const kPoints = 20000; // largest number of points of bodies that frame a picture
 const kLargest = 4; // diagonal of bodies and obstacles in a picture, relative to that of the bodies
 const kUnchangeable = "a recorded run cannot be changed; aspic view SCENE runs it live";
 const kNotRecorded = "a recorded run does not contain this; aspic view SCENE computes it";
+
+function everyNth(positions: ArrayLike<number>, stride: number): Vec3[] {
+  return Array.from({ length: Math.ceil(positions.length / 3 / stride) }, (_, i) => vectorAt(positions, i * stride));
+}
+
+function diagonal(points: Vec3[]): number {
+  const { lower, upper } = boxOf(Float32Array.from(points.flat()));
+  return length(minus(upper, lower));
+}
 
 export class RecordedSource implements Source {
   readonly live = false;
@@ -105,14 +115,15 @@ export class RecordedSource implements Source {
     return this.opened().head.frames;
   }
 
-  // Bounding box of all positions of all frames and of the surfaces of obstacles, unless these are so large that the
-  // bodies would be tiny. Planes have no end, and bodies that fall onto one are in the box.
-  get box(): Box {
-    const { lower, size, obstacles = [], frames } = this.opened().head;
-    const bodies = { lower, upper: lower.map((x, c) => x + size[c]) as Vec3 };
-    const seen = [...obstacles, ...(frames.obstacles ?? []).flat()].filter(({ plane }) => !plane).map(({ points }) => points);
-    const all = boxOf(Float32Array.from([lower, bodies.upper, ...seen].flat()));
-    const diagonal = (box: Box): number => length(minus(box.upper, box.lower));
+  // Points that a picture of the run should show: those of bodies in all frames, thinned, and of the surfaces of obstacles,
+  // unless these are so large that the bodies would be tiny. Planes have no end, and bodies fall onto them.
+  get points(): Vec3[] {
+    const { frames, obstacles = [] } = this.opened().head;
+    const ofFrames = frames.step.map((_, frame) => carried(this.surface, this.opened().positions(frame)));
+    const stride = Math.ceil((ofFrames.length * ofFrames[0]!.length) / 3 / kPoints);
+    const bodies = ofFrames.flatMap((positions) => everyNth(positions, stride));
+    const surfaces = [...obstacles, ...(frames.obstacles ?? []).flat()].filter(({ plane }) => !plane);
+    const all = [...bodies, ...surfaces.flatMap(({ points }) => everyNth(points, 1))];
     return diagonal(all) <= kLargest * diagonal(bodies) ? all : bodies;
   }
 

@@ -8,7 +8,7 @@ import type { Field, Vec3 } from "./protocol";
 import type { RecordedSource } from "./recorded";
 import { Store } from "./store";
 import { type CameraRig, kViewNames, orientationFrom, sceneAxes, type ViewName } from "./view/cameras";
-import type { Box } from "./view/body";
+import { boxOf } from "./view/body";
 import { Display, type DisplaySettings } from "./view/display";
 import { project } from "./view/lens";
 import { View } from "./view/view";
@@ -74,20 +74,19 @@ export function stepsToShow(frames: { step: number[]; time: number[] }, request:
 const kPresets: Record<string, Partial<DisplaySettings>> = {
   "": { shininess: 20 },
   paper: { inside: "same", pins: false, contacts: false, grid: false, scaleBar: true, shininess: 15, ownBackground: true, background: "#ffffff" },
+  plain: { inside: "same", shininess: 20, pins: false, contacts: false, textSize: 0 },
+  tissue: { inside: "same", shininess: 50, pins: false, contacts: false, fibres: false, textSize: 0, bodyColor: "#c98474", skin: true },
   talk: { inside: "same", shininess: 20, pins: false, contacts: false, textSize: 1.7 },
 };
-const kFilled = 0.86; // part of the picture that the box of the run fills
+const kFilled = 0.86; // part of the picture that the run fills
 
-// Moves the camera so that the box just fits the picture.
-function fit(rig: CameraRig, { lower, upper }: Box, width: number, height: number): void {
-  const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((k) => [0, 1, 2].map((c) => (k & (1 << c) ? upper : lower)[c]) as Vec3);
-  for (let tries = 0; tries < 4; ++tries) {
+// Moves the camera so that the points just fit the picture.
+function fit(rig: CameraRig, points: Vec3[], width: number, height: number): void {
+  for (let tries = 0; tries < 6; ++tries) {
     const lens = rig.lens(width, height);
-    const sizes = corners.map((corner) => {
-      const [x, y] = project(lens, corner);
-      return Math.max(Math.abs(x / width - 0.5), Math.abs(y / height - 0.5));
-    });
-    rig.distance *= (2 * Math.max(...sizes)) / kFilled;
+    const { lower, upper } = boxOf(Float32Array.from(points.flat()), (point) => project(lens, point));
+    rig.pan((width - lower[0] - upper[0]) / 2, (height - lower[1] - upper[1]) / 2, height);
+    rig.distance *= Math.max((upper[0] - lower[0]) / width, (upper[1] - lower[1]) / height) / kFilled;
   }
 }
 
@@ -99,7 +98,8 @@ function aim(rig: CameraRig, request: RenderRequest, source: RecordedSource, up:
     rig.orientation.copy(orientationFrom(new Vector3(...request.view).normalize(), axes.up, axes.right));
   }
   rig.setOrthographic(request.preset === "paper");
-  rig.center(source.box.lower, source.box.upper);
+  const { lower, upper } = boxOf(Float32Array.from(source.points.flat()));
+  rig.center(lower, upper);
 }
 
 // Resolves when the store has the initial messages of the source.
@@ -141,7 +141,7 @@ async function draw(request: RenderRequest, source: RecordedSource, send: Send):
   if (request.color !== "") await color(request, source, display, scene.fields);
   aim(display.camera("a"), request, source, scene.up);
   const { width, height } = view.lens();
-  fit(display.camera("a"), source.box, width, height);
+  fit(display.camera("a"), source.points, width, height);
   const steps = stepsToShow(source.frames, request);
   await send("/count", String(steps.length));
   for (const step of steps) {

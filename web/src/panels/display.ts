@@ -113,6 +113,7 @@ function addAppearance(folder: Folder): void {
   folder.add("insideColor", "Inside's color");
   folder.add("invert", "Invert normals");
   folder.slider("shininess", "Shininess", 0, 200, 1);
+  folder.add("skin", "Translucent skin");
   folder.add("ownBackground", "Own background");
   folder.add("background", "Background");
 }

@@ -162,6 +162,7 @@ export class Body {
     this.uniforms.insideColor.value.set(settings.insideColor);
     this.uniforms.insideOwn.value = settings.inside === "own";
     this.uniforms.inverted.value = settings.invert;
+    this.uniforms.skin.value = settings.skin;
     const hidden = settings.invert ? THREE.BackSide : THREE.FrontSide;
     const side = settings.inside === "hidden" ? hidden : THREE.DoubleSide;
     if (this.surface.flatShading === settings.smooth || this.surface.side !== side) this.surface.needsUpdate = true;

@@ -20,6 +20,7 @@ export const kDefaults = {
   insideColor: "#d9a05b",
   invert: false, // swap outside and inside
   shininess: 40,
+  skin: false, // light that enters the body reddens its shadows
   ownBackground: false, // otherwise the background of the theme
   background: "#ffffff",
   transparent: false, // no background, for pictures
@@ -29,7 +30,7 @@ export const kDefaults = {
   shadows: true,
   axes: true,
   scaleBar: false, // in orthographic views, where a length is the same at every depth
-  textSize: 1, // in pictures, relative to the usual size
+  textSize: 1, // in pictures, relative to the usual size; 0: no texts and marks
   pins: true,
   fibres: true,
   clip: "off" as "off" | "x" | "y" | "z",

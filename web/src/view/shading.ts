@@ -11,6 +11,7 @@ export const makeFieldUniforms = () => ({
   insideColor: { value: new THREE.Color() },
   insideOwn: { value: true },
   inverted: { value: false },
+  skin: { value: false },
 });
 
 type Uniforms = Record<string, THREE.IUniform>;
@@ -32,7 +33,7 @@ export const kGroundRadius = 7; // relative to the radius of the scene
 const kFieldPars = /* glsl */ `
   uniform sampler2D fieldMap;
   uniform float fieldLow, fieldScale;
-  uniform bool fieldLog, fieldShown, insideOwn, inverted;
+  uniform bool fieldLog, fieldShown, insideOwn, inverted, skin;
   uniform vec3 insideColor;
   varying float vFieldValue, vIsSheet;
 `;
@@ -48,6 +49,17 @@ const kFieldColor = /* glsl */ `
   if (insideOwn && vIsSheet < 0.5 && gl_FrontFacing == inverted) diffuseColor.rgb = insideColor;
 `;
 
+// Red light travels farthest inside tissue: it brightens places with little light, and skin is translucent at its rim.
+const kSkin = /* glsl */ `
+  if (skin) {
+    vec3 light = reflectedLight.directDiffuse + reflectedLight.indirectDiffuse;
+    vec3 share = clamp(light / max(diffuseColor.rgb, 1e-3), 0.0, 1.0);
+    float rim = pow(1.0 - abs(dot(normal, normalize(vViewPosition))), 3.0);
+    vec3 entered = vec3(0.5, 0.12, 0.06) * (1.0 - share) * sqrt(share) + vec3(0.25, 0.05, 0.03) * rim;
+    reflectedLight.directDiffuse += diffuseColor.rgb * entered;
+  }
+`;
+
 export function makeSurfaceMaterial(uniforms: FieldUniforms): THREE.MeshPhongMaterial {
   const material = new THREE.MeshPhongMaterial({ side: THREE.DoubleSide, clipShadows: true });
   material.polygonOffset = true; // keeps it behind the wires
@@ -57,7 +69,11 @@ export function makeSurfaceMaterial(uniforms: FieldUniforms): THREE.MeshPhongMat
     "#include <common>": "#include <common>\nattribute float fieldValue, isSheet;\nvarying float vFieldValue, vIsSheet;",
     "#include <begin_vertex>": "#include <begin_vertex>\nvFieldValue = fieldValue;\nvIsSheet = isSheet;",
   };
-  const fragment = { "#include <common>": `#include <common>\n${kFieldPars}`, "#include <color_fragment>": kFieldColor };
+  const fragment = {
+    "#include <common>": `#include <common>\n${kFieldPars}`,
+    "#include <color_fragment>": kFieldColor,
+    "#include <lights_fragment_end>": `#include <lights_fragment_end>\n${kSkin}`,
+  };
   return extend(material, uniforms, vertex, fragment);
 }
 

@@ -222,7 +222,7 @@ export class View {
 
   // Width of the strip beside the body for the color bar.
   private strip(): number {
-    return this.figure.colored() ? Math.round(kBarWidth * this.style.em) : 0;
+    return this.figure.colored() && this.display.settings.textSize > 0 ? Math.round(kBarWidth * this.style.em) : 0;
   }
 
   private pixelRatio(): number {
@@ -231,6 +231,7 @@ export class View {
 
   private marks(lens: Lens): Marks {
     const settings = this.display.settings;
+    if (settings.textSize === 0) return {};
     const shown = this.figure.colored();
     const grab = this.store.state?.[this.side]?.grab;
     const { cursor, target } = this.touch;
