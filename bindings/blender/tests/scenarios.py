@@ -460,6 +460,8 @@ def animated_gltf_moves_like_the_armature():
     paint(figure, "Upper", lambda x: (1 + x.z) / 2)
     figure.modifiers.new("Rig", "ARMATURE").object = rig
     for frame, angle in ((0, 0), (7, 0.9), (12, -0.5)):
+        rig.location.y = angle
+        rig.keyframe_insert("location", frame=frame)
         for bone in rig.pose.bones:
             bone.rotation_quaternion = (math.cos(angle / 2), math.sin(angle / 2), 0, 0)
             bone.location.x, bone.scale.y = 0.2 * angle, 1 + 0.3 * angle
@@ -576,6 +578,8 @@ def addon_can_be_disabled_and_enabled():
     check(not hasattr(ob, "aspic"))
     check_shows(ob, folder, "Ball")  # the modifier is Blender's own
     aspic_blender.register()
+    keys = bpy.context.window_manager.keyconfigs.addon.keymaps["Window"].keymap_items
+    check([key.type for key in keys if key.idname == "aspic.cancel"] == ["ESC"])
     check(ob.aspic.role == "BODY")
     bake(3)
 
