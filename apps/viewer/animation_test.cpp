@@ -52,6 +52,25 @@ TEST(AnimationOfASession, EndsAtTheCurrentPositions) {
   EXPECT_THAT(times, testing::ElementsAre(testing::FloatEq(0), testing::FloatEq(0.02F), testing::FloatEq(0.04F)));
 }
 
+TEST(AnimationOfASession, ContainsTheCamera) {
+  Page page(kBeam, {"time.step=0.02"});
+  page.steps(1);
+  Json camera = {{"eye", {0, 0, 5}}, {"right", {1, 0, 0}}, {"up", {0, 1, 0}}, {"slope", 0.5}, {"nearest", 0.01}};
+  const auto ask = [&](const char* format) {
+    return Json{{"ask", "animation"}, {"side", "a"}, {"format", format}, {"camera", camera}};
+  };
+  std::string bytes;
+  const std::string usd = page.send(ask("usd"))["base64"], glb = page.send(ask("glb"))["base64"];
+  ASSERT_TRUE(decode_base64(std::string_view(usd), usd.size(), bytes));
+  EXPECT_THAT(bytes, HasSubstr("xformOp:transform = ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 5, 1))"));
+  EXPECT_THAT(bytes, HasSubstr("verticalAperture = 50\n"));
+  bytes.clear();
+  ASSERT_TRUE(decode_base64(std::string_view(glb), glb.size(), bytes));
+  EXPECT_THAT(bytes, HasSubstr(R"({"camera":0,"name":"view","matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,5,1]})"));
+  camera["up"] = {0, 2, 0};
+  EXPECT_THAT(page.refused(ask("usd")), HasSubstr("orthonormal right and up"));
+}
+
 TEST(AnimationOfASession, NeedsMotion) {
   Page page;
   EXPECT_THAT(page.refused({{"ask", "animation"}, {"side", "a"}, {"format", "usd"}}), HasSubstr("play first"));

@@ -267,7 +267,7 @@ GltfMotion parse_gltf_motion(const std::string& file, std::string_view contents,
   const double duration = animation.duration(), samples = std::ceil(duration * sampling.rate - 1e-6) + 1;
   const auto points = static_cast<double>(surface.vertex_count() + surface.map_count() + animation.channel_count());
   if (!(samples <= kMostSamples && samples * points <= kMostPoints))
-    gltf.fail("the animation of " + std::to_string(duration) + " s has " + std::to_string(samples) + " samples of " +
+    gltf.fail("the animation of " + Json(duration).dump() + " s has " + Json(samples).dump() + " samples of " +
                   std::to_string(surface.vertex_count()) + " vertices; at most 100000 and 1 GiB are read",
               "shorten it, or lower fps");
   GltfMotion motion;

@@ -15,8 +15,8 @@ namespace aspic {
 MeshContent parse_gltf(const std::string& file, std::string_view contents, const ReadBeside& read_beside);
 
 struct GltfSampling {
-  double rate;            // samples per second
-  std::string animation;  // name; empty: the only one
+  double rate;                 // samples per second
+  std::string animation = {};  // name; empty: the only one
 };
 
 struct GltfMotion {

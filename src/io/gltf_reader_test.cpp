@@ -104,8 +104,8 @@ TEST_F(GltfReading, SkinsAndInterpolatesAnimations) {
   const double size = 1 + 2 * t * t * (3 - 2 * t);
   const std::vector<Vec3d> expected = {
       {}, {{size * (1 + c), size * s, 0}}, {{size * (1 - s / 2), size * (1 + c) / 2, 0}}};
-  for (const int v : {0, 1, 2}) EXPECT_LT(distance(motion.vertices[1][v], expected[v]), 1e-6) << v;
-  EXPECT_LT(distance(motion.vertices[3][1], Vec3d{{3, 3, 5}}), 1e-6);
+  for (const int v : {0, 1, 2}) EXPECT_LT(norm(motion.vertices[1][v] - expected[v]), 1e-6) << v;
+  EXPECT_LT(norm(motion.vertices[3][1] - Vec3d{{3, 3, 5}}), 1e-6);
 }
 
 TEST_F(GltfReading, RefusesDefectiveAnimations) {

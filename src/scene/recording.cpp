@@ -41,7 +41,7 @@ Recording read(const std::filesystem::path& path, const Table& table, const Affi
     GltfMotion motion = read_gltf_motion(path, {fps, animation ? animation->text() : ""});
     recording = {std::move(motion.times), std::move(motion.vertices)};
   } else {
-    if (animation) throw error_at(animation->place, "point caches have one motion; remove `animation`");
+    if (animation) throw InvalidInput("point caches have one motion; remove `animation`");
     recording = read_cache(path, fps);
   }
   for (size_t k = 0; k < recording.place.size(); ++k)
