@@ -38,7 +38,7 @@ double read_number(ByteCursor& cursor, uint64_t type) {
   }
 }
 
-// The integer of a normalized type that stands for 1.
+// The integer of a normalized type that means 1.
 double unit_of(uint64_t type) { return type == kInt8 ? 127 : type == kUint8 ? 255 : type == kInt16 ? 32767 : 65535; }
 
 // An extension that changes neither triangles nor positions.

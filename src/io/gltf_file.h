@@ -2,17 +2,15 @@
 #pragma once
 #include <array>
 #include <cmath>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-namespace aspic {
+#include "io/gltf_reader.h"
 
-// Returns the bytes of a file beside the .gltf. Throws InvalidInput.
-using ReadBeside = std::function<std::string(const std::string& name)>;
+namespace aspic {
 
 // All functions throw InvalidInput "file: byte N: problem; remedy".
 class GltfFile {

@@ -1,14 +1,17 @@
 // Reads the triangles of glTF 2.0, as .glb or .gltf [Khronos], and their animation: the meshes of the default scene,
 // placed by their nodes or, with a skin, by its joints.
 #pragma once
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "io/gltf_file.h"
 #include "io/mesh_content.h"
 
 namespace aspic {
+
+// Returns the bytes of a file beside the .gltf. Throws InvalidInput.
+using ReadBeside = std::function<std::string(const std::string& name)>;
 
 // Vertices of a node at the same position become one, since glTF repeats them along edges of normals and textures.
 // Morph targets and animations are ignored. Throws InvalidInput.

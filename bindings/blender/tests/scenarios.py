@@ -426,18 +426,18 @@ def wind_of_blender_blows():
 
 @scenario
 def physics_of_blender_are_adopted():
-    cloth, solid, wall, crate = (ball(name, at=(i, 0, 0), role="NONE") for i, name in
-                                 enumerate(("Cloth", "Solid", "Wall", "Crate")))
+    cloth, solid, wall, brick = (ball(name, at=(i, 0, 0), role="NONE") for i, name in
+                                 enumerate(("Cloth", "Solid", "Wall", "Brick")))
     cloth.modifiers.new("Cloth", "CLOTH").settings.vertex_group_mass = paint(cloth, "held", lambda x: float(x.z > 0))
     solid.modifiers.new("Softbody", "SOFT_BODY")
     wall.modifiers.new("Collision", "COLLISION")
     bpy.ops.object.select_all(action="DESELECT")
-    bpy.context.view_layer.objects.active = crate
+    bpy.context.view_layer.objects.active = brick
     bpy.ops.rigidbody.object_add(type="PASSIVE")
-    crate.rigid_body.friction = 0.7
+    brick.rigid_body.friction = 0.7
     bpy.ops.aspic.adopt()
-    check([ob.aspic.role for ob in (cloth, solid, wall, crate)] == ["CLOTH", "BODY", "OBSTACLE", "OBSTACLE"])
-    check(cloth.aspic.pin_group == "held" and abs(crate.aspic.friction - 0.7) < SINGLE)
+    check([ob.aspic.role for ob in (cloth, solid, wall, brick)] == ["CLOTH", "BODY", "OBSTACLE", "OBSTACLE"])
+    check(cloth.aspic.pin_group == "held" and abs(brick.aspic.friction - 0.7) < SINGLE)
     check(not cloth.modifiers["Cloth"].show_viewport and wall.modifiers["Collision"].show_viewport)
 
 
