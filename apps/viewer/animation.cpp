@@ -82,14 +82,14 @@ Motion motion_of(const ShownSide& shown, const Format& format) {
   return motion;
 }
 
-std::string usd_text(const std::string& name, const Surface& surface, const Motion& motion, UpAxis up) {
+std::string usd_text(const std::string& name, const Surface& surface, const Motion& motion, const UsdView& view) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "motion.usda";
   const UsdMesh mesh{.name = name,
                      .triangles = surface.triangles,
                      .points = [&](int k) { return motion.frames[k]; },
                      .is_two_sided = true};
-  write_usd(path, {mesh}, motion.times, motion.per_second, up);
+  write_usd(path, {mesh}, motion.times, motion.per_second, view);
   return read_file(path);
 }
 
@@ -108,28 +108,30 @@ std::string pc2_archive(const std::string& name, const Surface& surface, const M
 }
 
 // Turns the z axis to the y axis, which is up in glTF.
-void turn_upright(Motion& motion) {
+void turn_upright(Motion& motion, std::optional<Camera>& camera) {
+  if (camera)
+    for (Vec3d* v : {&camera->eye, &camera->right, &camera->up}) (*v)[1] = std::exchange((*v)[2], -(*v)[1]);
   for (std::vector<float>& frame : motion.frames)
     for (size_t i = 0; i + 2 < frame.size(); i += 3) frame[i + 1] = std::exchange(frame[i + 2], -frame[i + 1]);
 }
 
 }  // namespace
 
-Json animation_reply(const ShownSide& shown, const std::string& format) {
+Json animation_reply(const ShownSide& shown, const std::string& format, std::optional<Camera> camera) {
   Motion motion = motion_of(shown, *std::find_if(std::begin(kFormats), std::end(kFormats),
                                                  [&](const Format& f) { return format == f.name; }));
   const std::string name = saved_name(shown.side.steered().scene);
   const UpAxis up = up_axis(shown.side.steered().scene.gravity);
   Json reply;
   if (format == "usd") {
-    reply = file_reply(name + ".usda", usd_text(name, shown.surface, motion, up));
+    reply = file_reply(name + ".usda", usd_text(name, shown.surface, motion, {up, camera}));
   } else if (format == "pc2") {
     reply = file_reply(name + "_pc2.zip", pc2_archive(name, shown.surface, motion));
   } else {
-    if (up == UpAxis::z) turn_upright(motion);
+    if (up == UpAxis::z) turn_upright(motion, camera);
     std::vector<double> times;
     for (const double time : motion.times) times.push_back(time - motion.times.front());
-    reply = file_reply(name + ".glb", glb({name, shown.surface.triangles, motion.frames, std::move(times)}));
+    reply = file_reply(name + ".glb", glb({name, shown.surface.triangles, motion.frames, std::move(times), camera}));
   }
   reply["note"] = fmt::format("{} frames, {:.3g} a second", motion.frames.size(), motion.per_second);
   return reply;

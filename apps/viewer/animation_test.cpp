@@ -10,8 +10,10 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-std::string exported(Page& page, const std::string& format) {
-  const std::string text = page.send({{"ask", "animation"}, {"side", "a"}, {"format", format}})["base64"];
+std::string exported(Page& page, const std::string& format, const Json& camera = {}) {
+  Json question = {{"ask", "animation"}, {"side", "a"}, {"format", format}};
+  if (!camera.is_null()) question["camera"] = camera;
+  const std::string text = page.send(question)["base64"];
   std::string_view rest = text;
   std::string bytes;
   EXPECT_TRUE(decode_base64(rest, text.size(), bytes));
@@ -50,6 +52,20 @@ TEST(AnimationOfASession, EndsAtTheCurrentPositions) {
   for (size_t i = 0; i < first.size(); ++i) EXPECT_NEAR(first[i] + last[i], picture.positions[i], 1e-6F);
   const auto times = floats(json["animations"][0]["samplers"][0]["input"]);
   EXPECT_THAT(times, testing::ElementsAre(testing::FloatEq(0), testing::FloatEq(0.02F), testing::FloatEq(0.04F)));
+}
+
+TEST(AnimationOfASession, ContainsTheCamera) {
+  Page page(kBeam, {"time.step=0.02"});
+  page.steps(1);
+  Json camera = {{"eye", {0, 0, 5}}, {"right", {1, 0, 0}}, {"up", {0, 1, 0}}, {"slope", 0.5}, {"nearest", 0.01}};
+  const std::string usd = exported(page, "usd", camera);
+  EXPECT_THAT(usd, HasSubstr("xformOp:transform = ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 5, 1))"));
+  EXPECT_THAT(usd, HasSubstr("verticalAperture = 50\n"));
+  EXPECT_THAT(exported(page, "glb", camera),
+              HasSubstr(R"({"camera":0,"name":"view","matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,5,1]})"));
+  camera["up"] = {0, 2, 0};
+  EXPECT_THAT(page.refused({{"ask", "animation"}, {"side", "a"}, {"format", "usd"}, {"camera", camera}}),
+              HasSubstr("orthonormal right and up"));
 }
 
 TEST(AnimationOfASession, NeedsMotion) {

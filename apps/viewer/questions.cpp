@@ -1,7 +1,9 @@
 // The questions of a page. They change no state, and any page may send them.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <limits>
+#include <optional>
 
 #include "base/error.h"
 #include "io/atomic_file.h"
@@ -46,6 +48,21 @@ std::string mesh_text(const ShownSide& shown, const std::string& format) {
 Json mesh_reply(const ShownSide& shown, const std::string& format) {
   return {{"name", fmt::format("{}_{:06}.{}", shown.side.steered().scene.name, shown.side.steps_taken(), format)},
           {"text", mesh_text(shown, format)}};
+}
+
+Camera camera_of(const Json& value) {
+  Arguments arguments(value, "camera");
+  Camera camera{.eye = arguments.vector("eye"),
+                .right = arguments.vector("right"),
+                .up = arguments.vector("up"),
+                .slope = arguments.number("slope"),
+                .nearest = arguments.number("nearest")};
+  const double skew =
+      std::abs(dot(camera.right, camera.up)) + std::abs(norm(camera.right) - 1) + std::abs(norm(camera.up) - 1);
+  if (!(skew < 1e-6 && camera.slope > 0 && camera.nearest > 0))
+    refuse("camera", value, "orthonormal right and up, and positive slope and nearest");
+  arguments.finish();
+  return camera;
 }
 
 Json mesh_error_reply(Stage& stage, ShownSide& shown, const StopToken& stop) {
@@ -93,8 +110,10 @@ void add_questions(const SessionOptions& options, Stage& stage, const Playback& 
   });
   add("animation", [](ShownSide& shown, Arguments& arguments) {
     const std::string format = arguments.choice("format", {"usd", "pc2", "glb"});
+    std::optional<Camera> camera;
+    if (arguments.has("camera")) camera = camera_of(arguments.value("camera"));
     arguments.finish();
-    return animation_reply(shown, format);
+    return animation_reply(shown, format, camera);
   });
   const auto add_plain = [&](const char* name, auto reply_of) {
     add(name, [reply_of](ShownSide& shown, Arguments& arguments) {

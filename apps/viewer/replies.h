@@ -1,5 +1,8 @@
 // Replies to the questions of a page. web/src/protocol.ts declares them.
 #pragma once
+#include <optional>
+
+#include "io/camera.h"
 #include "optimize/landscape.h"
 #include "viewer/session_messages.h"
 
@@ -20,7 +23,7 @@ Json to_json(const std::vector<CurvePoint>& curve);
 Json function_reply(Arguments& question);
 
 // Returns {"name", "base64", "note"}. `format`: "usd", "pc2" (a ZIP archive of the surface as OBJ and its point cache)
-// or "glb". Throws InvalidInput without motion, and for a surface that is too large.
-Json animation_reply(const ShownSide& shown, const std::string& format);
+// or "glb"; USD and GLB contain the camera. Throws InvalidInput without motion, and for a surface that is too large.
+Json animation_reply(const ShownSide& shown, const std::string& format, std::optional<Camera> camera = {});
 
 }  // namespace aspic::viewer

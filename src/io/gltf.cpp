@@ -1,6 +1,7 @@
 #include "io/gltf.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/check.h"
 #include "io/number_text.h"
@@ -87,6 +88,26 @@ std::vector<float> weights_of(size_t frames) {
   return weights;
 }
 
+// The node of a camera, and the list of it.
+struct CameraText {
+  std::string node, list;
+
+  CameraText() = default;
+  explicit CameraText(const Camera& camera) {
+    for (const auto& row : camera.matrix())
+      for (const double number : row) {
+        node += node.empty() ? ",{\"camera\":0,\"name\":\"view\",\"matrix\":[" : ",";
+        append_number(node, number);
+      }
+    node += "]}";
+    list = ",\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":";
+    append_number(list, 2 * std::atan(camera.slope));
+    list += ",\"znear\":";
+    append_number(list, camera.nearest);
+    list += "}}]";
+  }
+};
+
 void append_chunk(std::string& file, ChunkType type, std::string bytes, char filler) {
   bytes.resize((bytes.size() + 3) / 4 * 4, filler);
   append_word(file, static_cast<uint32_t>(bytes.size()));
@@ -116,10 +137,12 @@ std::string glb(const GltfMesh& mesh) {
         times + ",\"output\":" + weights + ",\"interpolation\":\"LINEAR\"}]}]";
   }
   const std::string name = json_text(mesh.name);
+  const CameraText camera = mesh.camera ? CameraText(*mesh.camera) : CameraText();
   const std::string json =
       R"({"asset":{"version":"2.0","generator":"Aspic"},"materials":[{"doubleSided":true}],)"
-      R"("scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"name":)" +
-      name + "}],\"meshes\":[{\"name\":" + name + ",\"primitives\":[{\"attributes\":{\"POSITION\":" + position +
+      R"("scene":0,"scenes":[{"nodes":)" +
+      std::string(mesh.camera ? "[0,1]" : "[0]") + R"(}],"nodes":[{"mesh":0,"name":)" + name + "}" + camera.node + "]" +
+      camera.list + ",\"meshes\":[{\"name\":" + name + ",\"primitives\":[{\"attributes\":{\"POSITION\":" + position +
       "},\"material\":0,\"indices\":" + indices + targets + "}]}]" + animations + "," + arrays.json() + "}";
   std::string chunks;
   append_chunk(chunks, kJson, json, ' ');

@@ -1,10 +1,12 @@
 // Binary glTF 2.0 (.glb) [Khronos]: one mesh whose frames are morph targets, for Blender, browsers and game engines.
 // Lengths are in meters, Y is up.
 #pragma once
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "io/camera.h"
 #include "mesh/tet_mesh.h"
 
 namespace aspic {
@@ -14,6 +16,7 @@ struct GltfMesh {
   std::span<const Triangle> triangles;
   std::vector<std::vector<float>> frames;  // at least one; 3 per vertex [m]
   std::vector<double> times;               // time of each frame, ascending [s]
+  std::optional<Camera> camera = {};
 };
 
 // The material is two-sided, for sheets. There are no normals, so that players compute those of the moved triangles.

@@ -1,8 +1,10 @@
-// Reads the triangles of glTF 2.0, as .glb or .gltf [Khronos]: the meshes of the default scene, placed by their nodes.
+// Reads the triangles of glTF 2.0, as .glb or .gltf [Khronos], and their animation: the meshes of the default scene,
+// placed by their nodes or, with a skin, by its joints.
 #pragma once
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "io/mesh_content.h"
 
@@ -12,7 +14,21 @@ namespace aspic {
 using ReadBeside = std::function<std::string(const std::string& name)>;
 
 // Vertices of a node at the same position become one, since glTF repeats them along edges of normals and textures.
-// Skinned meshes are in their bind pose, morph targets and animations are ignored. Throws InvalidInput.
+// Morph targets and animations are ignored. Throws InvalidInput.
 MeshContent parse_gltf(const std::string& file, std::string_view contents, const ReadBeside& read_beside);
+
+struct GltfSampling {
+  double rate;                 // samples per second
+  std::string animation = {};  // name; empty: the only one
+};
+
+struct GltfMotion {
+  std::vector<double> times;                 // ascending from 0 to the last keyframe [s]
+  std::vector<std::vector<Vec3d>> vertices;  // of each time, numbered like those of parse_gltf [m]
+};
+
+// Samples an animation of nodes and joints. Throws InvalidInput, also above 1 GiB.
+GltfMotion parse_gltf_motion(const std::string& file, std::string_view contents, const ReadBeside& read_beside,
+                             const GltfSampling& sampling);
 
 }  // namespace aspic

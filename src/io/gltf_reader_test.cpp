@@ -95,5 +95,41 @@ TEST_F(GltfReading, ErrorsNamePlaceAndRemedy) {
   EXPECT_THAT(refusal(R"("mesh":0)", R"("mesh":3)"), HasSubstr("meshes[3] is named, but there are 1"));
 }
 
+TEST_F(GltfReading, SkinsAndInterpolatesAnimations) {
+  write_file(folder / "a.gltf", gltf_arm());
+  EXPECT_EQ(read_tri_mesh(folder / "a.gltf").vertices[1][0], 2);
+  const GltfMotion motion = read_gltf_motion(folder / "a.gltf", {.rate = 2.4, .animation = "bend"});
+  EXPECT_THAT(motion.times, ElementsAre(0, 1 / 2.4, 2 / 2.4, 1));
+  const double t = 1 / 2.4, angle = std::acos(0.0) * t, s = std::sin(angle), c = std::cos(angle);
+  const double size = 1 + 2 * t * t * (3 - 2 * t);
+  const std::vector<Vec3d> expected = {
+      {}, {{size * (1 + c), size * s, 0}}, {{size * (1 - s / 2), size * (1 + c) / 2, 0}}};
+  for (const int v : {0, 1, 2}) EXPECT_LT(norm(motion.vertices[1][v] - expected[v]), 1e-6) << v;
+  EXPECT_LT(norm(motion.vertices[3][1] - Vec3d{{3, 3, 5}}), 1e-6);
+}
+
+TEST_F(GltfReading, RefusesDefectiveAnimations) {
+  const auto message = [&](const std::string& old, const std::string& replacement, const char* name = "") {
+    std::string text = gltf_arm();
+    text.replace(text.find(old), old.size(), replacement);
+    write_file(folder / "a.gltf", text);
+    return message_of([&] { read_gltf_motion(folder / "a.gltf", {.rate = 24, .animation = name}); });
+  };
+  EXPECT_THAT(message("bend", "bend", "walk"), HasSubstr("animation = 'walk' is none of its 1 animations: 'bend'; "));
+  EXPECT_THAT(message("\"animations\"", "\"extras\""), HasSubstr("it has no animation; "));
+  EXPECT_THAT(message("[{\"name\"", "[{},{\"name\""), HasSubstr("it has 2 animations: '', 'bend'; choose one"));
+  EXPECT_THAT(message("\"joints\":[1,2]", "\"joints\":[1,7]"),
+              HasSubstr("joint 1 of skins[0] is no node of the scene"));
+  EXPECT_THAT(message("\"joints\":[1,2]", "\"joints\":[1]"),
+              HasSubstr("vertex 1 of meshes[0] has the weight 1.000000 at joint 1 of 1"));
+  EXPECT_THAT(message("\"joints\":[1,2]", "\"joints\":[1,2,1]"), HasSubstr("3 joints, but 2 inverse bind matrices"));
+  EXPECT_THAT(message("\"WEIGHTS_0\":2", "\"WEIGHTS_0\":9"), HasSubstr("accessors[9] is named, but there are 8"));
+  EXPECT_THAT(message("\"WEIGHTS_0\":2", "\"WEIGHT\":2"), HasSubstr("meshes[0] has no integer WEIGHTS_0"));
+  EXPECT_THAT(message("\"output\":5", "\"output\":1"), HasSubstr("accessors[1] has components of type 5121"));
+  EXPECT_THAT(message("\"output\":7", "\"output\":6"), HasSubstr("a sampler has 6 numbers; 18 are needed"));
+  EXPECT_THAT(message("\"path\":\"scale\"", "\"path\":\"weights\""), HasSubstr("morph targets of nodes[1]; bake them"));
+  EXPECT_THAT(message("\"children\":[2]", "\"children\":[1]"), HasSubstr("nodes[1] has two parents"));
+}
+
 }  // namespace
 }  // namespace aspic

@@ -268,6 +268,46 @@ inline std::string gltf_square(bool is_binary) {
   return file + std::string("BIN\0", 4) + bytes;
 }
 
+// A triangle on two joints: the second one, at (1, 0, 0), turns by 90 degrees about z within a second, while the first
+// jumps by (0, 0, 5) at its end and grows by the factor 3.
+inline std::string gltf_arm() {
+  std::string bytes, views, accessors;
+  const auto add = [&](const std::string& data, int component, int count, const char* shape) {
+    const char* comma = views.empty() ? "" : ",";
+    views += comma + (R"({"buffer":0,"byteOffset":)" + std::to_string(bytes.size())) +
+             ",\"byteLength\":" + std::to_string(data.size()) + "}";
+    accessors += comma + (R"({"bufferView":)" + std::to_string(std::count(views.begin(), views.end(), '{') - 1)) +
+                 ",\"componentType\":" + std::to_string(component) + ",\"count\":" + std::to_string(count) +
+                 ",\"type\":\"" + shape + "\"}";
+    bytes += data;
+  };
+  const auto floats = [](std::vector<float> x) {
+    return std::string(reinterpret_cast<const char*>(x.data()), 4 * x.size());
+  };
+  const float half = 0.5F, root = 0.70710678F;
+  add(floats({0, 0, 0, 2, 0, 0, 1, 1, 0}), 5126, 3, "VEC3");
+  add(std::string("\0\0\0\0\1\0\0\0\0\1\0\0", 12), 5121, 3, "VEC4");
+  add(floats({1, 0, 0, 0, 1, 0, 0, 0, half, half, 0, 0}), 5126, 3, "VEC4");
+  add(floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0,  0, 0, 1,  //
+              1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 1}),
+      5126, 2, "MAT4");
+  add(floats({0, 1}), 5126, 2, "SCALAR");
+  add(floats({0, 0, 0, 1, 0, 0, root, root}), 5126, 2, "VEC4");
+  add(floats({0, 0, 0, 0, 0, 5}), 5126, 2, "VEC3");
+  add(floats({0, 0, 0, 1, 1, 1, 0, 0, 0, 0, 0, 0, 3, 3, 3, 0, 0, 0}), 5126, 6, "VEC3");
+  std::string uri = "data:application/octet-stream;base64,";
+  append_base64(bytes, uri);
+  return R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0,1]}],"nodes":[{"mesh":0,"skin":0,"translation":[9,9,9]},)"
+         R"({"children":[2]},{"translation":[1,0,0]}],"skins":[{"joints":[1,2],"inverseBindMatrices":3}],)"
+         R"("meshes":[{"primitives":[{"attributes":{"POSITION":0,"JOINTS_0":1,"WEIGHTS_0":2}}]}],)"
+         R"("animations":[{"name":"bend","channels":[{"sampler":0,"target":{"node":2,"path":"rotation"}},)"
+         R"({"sampler":1,"target":{"node":1,"path":"translation"}},{"sampler":2,"target":{"node":1,"path":"scale"}}],)"
+         R"("samplers":[{"input":4,"output":5},{"input":4,"output":6,"interpolation":"STEP"},)"
+         R"({"input":4,"output":7,"interpolation":"CUBICSPLINE"}]}],"accessors":[)" +
+         accessors + "],\"bufferViews\":[" + views + "],\"buffers\":[{\"byteLength\":" + std::to_string(bytes.size()) +
+         ",\"uri\":\"" + uri + "\"}]}";
+}
+
 // All files are valid.
 inline std::vector<MeshExample> mesh_examples() {
   return {
@@ -297,6 +337,7 @@ inline std::vector<MeshExample> mesh_examples() {
       {"legacy VTK surface", ".vtk", legacy_vtk_surface(), 4, 0, 4},
       {"glTF binary", ".glb", gltf_square(true), 4, 0, 2},
       {"glTF text", ".gltf", gltf_square(false), 4, 0, 2},
+      {"glTF with a skin", ".gltf", gltf_arm(), 3, 0, 1},
   };
 }
 

@@ -100,13 +100,14 @@ void check_memory(const fs::path& path) {
                        std::to_string(available) + " bytes of memory are free; use a coarser mesh");
 }
 
-MeshContent read_gltf(const fs::path& path) {
-  const auto read_beside = [&](const std::string& name) {
-    check_memory(path.parent_path() / name);
-    return read_file(path.parent_path() / name);
+ReadBeside files_beside(const fs::path& path) {
+  return [folder = path.parent_path()](const std::string& name) {
+    check_memory(folder / name);
+    return read_file(folder / name);
   };
-  return parse_gltf(path.string(), read_file(path), read_beside);
 }
+
+MeshContent read_gltf(const fs::path& path) { return parse_gltf(path.string(), read_file(path), files_beside(path)); }
 
 MeshContent read_vtk_mesh(const fs::path& path) {
   Vtu vtu = read_vtk_or_vtu(path);
@@ -252,6 +253,11 @@ TriMesh read_tri_mesh(const std::string& path) {
   auto mesh = read_mesh(path);
   if (auto* triangles = std::get_if<TriMesh>(&mesh)) return std::move(*triangles);
   return boundary_surface(std::get<TetMesh>(mesh)).surface;
+}
+
+GltfMotion read_gltf_motion(const std::string& path, const GltfSampling& sampling) {
+  check_memory(path);
+  return parse_gltf_motion(path, read_file(path), files_beside(path), sampling);
 }
 
 void write_mesh(const std::string& path, const TetMesh& mesh, FileEncoding encoding) {

@@ -9,6 +9,9 @@
 
 namespace aspic {
 
+struct GltfMotion;
+struct GltfSampling;
+
 // A supported file format.
 struct MeshFormat {
   std::string extension;  // ".msh"
@@ -26,6 +29,8 @@ std::variant<TetMesh, TriMesh> read_mesh(const std::string& path, std::vector<st
 TetMesh read_tet_mesh(const std::string& path, std::vector<std::string>* notes = nullptr, MeshGroups* groups = nullptr);
 // Reads triangles, or the boundary of the tets. Throws InvalidInput like read_mesh().
 TriMesh read_tri_mesh(const std::string& path);
+// Reads the animation of the vertices of read_tri_mesh() (io/gltf_reader.h). Throws InvalidInput.
+GltfMotion read_gltf_motion(const std::string& path, const GltfSampling& sampling);
 
 // Reads the texture coordinates (u, v, 0) of the corners of each triangle of an OBJ file. Throws InvalidInput like
 // read_mesh(), and if a triangle has none, or no area in them.

@@ -154,6 +154,34 @@ void write_mesh_prim(OutputFile& file, const UsdMesh& mesh, const std::string& n
   file.append("    }\n");
 }
 
+// Apertures and focal lengths of USD are in tenths of the unit of length; only their ratios matter here.
+std::string camera_prim(const Camera& camera, const std::string& name) {
+  constexpr double kFocalLength = 50, kAspect = 16.0 / 9;
+  std::string rows;
+  for (const auto& row : camera.matrix()) {
+    for (size_t c = 0; c < 4; ++c) {
+      rows += c > 0 ? ", " : rows.empty() ? "(" : ", (";
+      append_number(rows, row[c]);
+    }
+    rows += ")";
+  }
+  std::string text = "\n    def Camera \"" + name + "\"\n    {\n        matrix4d xformOp:transform = (" + rows +
+                     ")\n        uniform token[] xformOpOrder = [\"xformOp:transform\"]\n";
+  const auto add = [&](const char* attribute, double value) {
+    text += std::string("        float ") + attribute + " = ";
+    append_number(text, value);
+    text += "\n";
+  };
+  add("focalLength", kFocalLength);
+  add("verticalAperture", 2 * kFocalLength * camera.slope);
+  add("horizontalAperture", 2 * kFocalLength * camera.slope * kAspect);
+  text += "        float2 clippingRange = (";
+  append_number(text, camera.nearest);
+  text += ", ";
+  append_number(text, 1e6 * camera.nearest);
+  return text + ")\n    }\n";
+}
+
 }  // namespace
 
 UpAxis up_axis(const Vec3d& gravity) {
@@ -162,16 +190,17 @@ UpAxis up_axis(const Vec3d& gravity) {
 }
 
 void write_usd(const fs::path& path, const std::vector<UsdMesh>& meshes, const std::vector<double>& times,
-               double codes_per_second, UpAxis up) {
+               double codes_per_second, const UsdView& view) {
   std::vector<double> codes;
   for (const double time : times) codes.push_back(time_code(time, codes_per_second));
 
   const fs::path unfinished = path.string() + ".unfinished";
   OutputFile file = OutputFile::create(unfinished);
   try {
-    file.append(head(up, codes, codes_per_second) + "\ndef Xform \"simulation\"\n{");
+    file.append(head(view.up, codes, codes_per_second) + "\ndef Xform \"simulation\"\n{");
     std::set<std::string> taken;
     for (const UsdMesh& mesh : meshes) write_mesh_prim(file, mesh, identifier(mesh.name, taken), codes);
+    if (view.camera) file.append(camera_prim(*view.camera, identifier("view", taken)));
     file.append("}\n");
     file.sync();
     file.close();

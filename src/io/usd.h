@@ -2,10 +2,12 @@
 #pragma once
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "io/camera.h"
 #include "mesh/tet_mesh.h"
 
 namespace aspic {
@@ -24,10 +26,15 @@ enum class UpAxis { y, z };
 // Returns z if gravity is along z, otherwise y.
 UpAxis up_axis(const Vec3d& gravity);
 
+struct UsdView {
+  UpAxis up = UpAxis::y;
+  std::optional<Camera> camera = {};
+};
+
 // Writes times[i] [s] as the time of sample i. A time code is time times `codes_per_second`, which should be the rate
 // of the samples because players show one frame per code. Writes sample by sample, so the file may exceed memory, and
 // replaces `path` atomically. Throws InvalidInput if it cannot be written.
 void write_usd(const std::filesystem::path& path, const std::vector<UsdMesh>& meshes, const std::vector<double>& times,
-               double codes_per_second, UpAxis up = UpAxis::y);
+               double codes_per_second, const UsdView& view = {});
 
 }  // namespace aspic

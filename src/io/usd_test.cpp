@@ -70,7 +70,7 @@ TEST_F(UsdScene, UpAxisFollowsGravity) {
   EXPECT_EQ(up_axis({{0, 0, -9.81}}), UpAxis::z);
   EXPECT_EQ(up_axis({{0, -9.81, 0}}), UpAxis::y);
   EXPECT_EQ(up_axis({{0, 0, 0}}), UpAxis::y);
-  write_usd(path("a.usda"), {}, {0}, 1, UpAxis::z);
+  write_usd(path("a.usda"), {}, {0}, 1, {UpAxis::z});
   EXPECT_THAT(read_file(path("a.usda")), HasSubstr("upAxis = \"Z\""));
 }
 

@@ -120,7 +120,7 @@ void RunSkins::write_usd(const std::vector<double>& frame_times, const RunObstac
                       .points = [&obstacles, i](int frame) { return flat(obstacles.at_frame(i, frame).vertices); },
                       .is_fixed = !start.is_moving});
   }
-  aspic::write_usd(layout_.usd(), meshes, frame_times, frame_rate_, up_);
+  aspic::write_usd(layout_.usd(), meshes, frame_times, frame_rate_, {up_});
   frames_in_usd_ = frame_times.size();
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "io/gltf_reader.h"
+#include "io/mesh_file.h"
 #include "io/pc2.h"
 
 namespace aspic {
@@ -11,7 +13,11 @@ namespace {
 
 constexpr double kMaxBytes = 1 << 30;  // of a recording in memory
 
-Recording read(const std::filesystem::path& path, double fps, const AffineMap& place) {
+bool is_gltf(const std::filesystem::path& path) {
+  return path.extension() == ".glb" || path.extension() == ".gltf" || path.extension() == ".GLB";
+}
+
+Recording read_cache(const std::filesystem::path& path, double fps) {
   Pc2Reader cache(path);
   if (cache.samples() == 0) throw InvalidInput("the cache has no samples");
   if (24.0 * cache.points() * cache.samples() > kMaxBytes)
@@ -21,14 +27,30 @@ Recording read(const std::filesystem::path& path, double fps, const AffineMap& p
   for (int k = 0; k < cache.samples(); ++k) {
     const std::vector<float> x = cache.sample(k);
     std::vector<Vec3d>& points = recording.place.emplace_back();
-    for (size_t i = 0; i < x.size(); i += 3) {
-      const Vec3d at = place({{x[i], x[i + 1], x[i + 2]}});
-      if (!std::isfinite(at[0] + at[1] + at[2]))
-        throw InvalidInput("point " + std::to_string(i / 3) + " of sample " + std::to_string(k) + " is not finite");
-      points.push_back(at);
-    }
+    for (size_t i = 0; i < x.size(); i += 3) points.push_back({{x[i], x[i + 1], x[i + 2]}});
     recording.time.push_back(cache.frame(k) / fps);
   }
+  return recording;
+}
+
+Recording read(const std::filesystem::path& path, const Table& table, const AffineMap& place) {
+  const double fps = table.find("fps")->number();
+  const Value* animation = table.find("animation");
+  Recording recording;
+  if (is_gltf(path)) {
+    GltfMotion motion = read_gltf_motion(path, {fps, animation ? animation->text() : ""});
+    recording = {std::move(motion.times), std::move(motion.vertices)};
+  } else {
+    if (animation) throw InvalidInput("point caches have one motion; remove `animation`");
+    recording = read_cache(path, fps);
+  }
+  for (size_t k = 0; k < recording.place.size(); ++k)
+    for (size_t i = 0; i < recording.place[k].size(); ++i) {
+      Vec3d& x = recording.place[k][i];
+      x = place(x);
+      if (!std::isfinite(x[0] + x[1] + x[2]))
+        throw InvalidInput("point " + std::to_string(i) + " of sample " + std::to_string(k) + " is not finite");
+    }
   return recording;
 }
 
@@ -49,12 +71,12 @@ std::shared_ptr<const Recording> read_recording(Table& table, const AffineMap& p
   const Value file = *table.find("file");
   const std::filesystem::path path = files.find(file);
   try {
-    auto recording = std::make_shared<const Recording>(read(path, table.find("fps")->number(), place));
+    auto recording = std::make_shared<const Recording>(read(path, table, place));
     if (recording->place[0].size() != vertices)
       throw InvalidInput(std::to_string(recording->place[0].size()) + " points, but the mesh has " +
                          std::to_string(vertices) + " vertices");
     check_fingerprint(table, "hash", fingerprint_of_file(path), path.string());
-    table.set("file", {files.keep(path, stem), {}});
+    table.set("file", {files.keep(path, is_gltf(path) ? stem + "_motion" : stem), {}});
     return recording;
   } catch (const InvalidInput& e) {
     throw error_at(file.place, std::string("file = ") + toml_string(file.text()) + ": " + e.what());

@@ -1,4 +1,4 @@
-// Recorded positions of the points of a surface: PC2 point caches.
+// Recorded positions of the points of a surface: PC2 point caches and animations of glTF files.
 #pragma once
 #include <memory>
 #include <span>
@@ -20,7 +20,7 @@ struct Recording {
   void interpolate(std::span<const int> points, double time, std::span<Vec3d> x) const;
 };
 
-// Reads the cache `file` of a table, adds it to the results as `stem`, and checks its hash. `place`: applied to all
+// Reads the `file` of a table, adds it to the results as `stem`, and checks its hash. `place`: applied to all
 // samples. Throws InvalidInput if it does not have as many points as `surface` vertices.
 std::shared_ptr<const Recording> read_recording(Table& table, const AffineMap& place, size_t vertices,
                                                 SceneFiles& files, const std::string& stem);

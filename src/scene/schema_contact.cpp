@@ -62,11 +62,14 @@ void add_contact_sections(Schema& s) {
   add_section(
       s,
       {"recording", "recording = { ... } in an [[obstacle]] or a motion",
-       "A PC2 point cache, as Blender writes it; placed like the mesh."},
-      {key("file", kText, "point cache", kRequired), key("hash", kText, "hash of the file, in resolved scenes"),
+       "A motion as Blender writes it; placed like the mesh."},
+      {key("file", kText, "PC2 point cache, or glTF with an animation of nodes or of the joints of skins", kRequired),
+       key("hash", kText, "hash of the file, in resolved scenes"),
+       key("animation", kText, "name of the animation; needed if the glTF file has several"),
        key("mesh", kText, "only in a motion: the recorded surface at rest, placed like the body's mesh"),
        key("mesh_hash", kText, "hash of that file, in resolved scenes"),
-       key("fps", kNumber, "frames per second", Units{"1/s"}, kPositive, Usual{"24.0", "the default of Blender"})});
+       key("fps", kNumber, "frames per second; samples per second of a glTF file", Units{"1/s"}, kPositive,
+           Usual{"24.0", "the default of Blender"})});
   s.sections.push_back({"obstacle_sphere", "sphere = { ... } in an [[obstacle]]", "A sphere without facets."});
   add_point("obstacle_sphere", "center", "center");
   add_radius("obstacle_sphere");

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "io/folder_test.h"
+#include "io/mesh_examples_test.h"
 #include "io/mesh_file.h"
 #include "io/pc2.h"
 #include "mesh/generators.h"
@@ -67,6 +68,17 @@ TEST(SurfaceMotion, PinsMoveLinearlyBetweenSamples) {
   const Pin& pin = scene.simulation.model().pins[0];
   const Vec3d X = scene.simulation.model().mesh.rest[pin.vertices[0]];
   EXPECT_LT(distance(pin.motion(X, 0.025), X + Vec3d{{0.25, 0.5, 1}}), kSingle);
+}
+
+TEST(SurfaceMotion, PinsFollowTheJointsOfAGltfFile) {
+  const TestFolder folder;
+  folder.write("arm.gltf", gltf_arm());
+  const std::string recording = "{ file = \"arm.gltf\", mesh = \"arm.gltf\", fps = 10 }";
+  const Scene scene =
+      cube_with(folder, "[[body.pin]]\nwhere = \"z < 0.1\"\nmotion = { recording = " + recording + " }\n");
+  const Pin& pin = scene.simulation.model().pins[0];
+  EXPECT_LT(distance(pin.motion({{0, 0, 0}}, 1), {{0, 0, 5}}), kSingle);
+  EXPECT_LT(distance(pin.motion({{1, 1, 0}}, 1), {{1.5, 1.5, 5}}), 1e-6);
 }
 
 TEST(SurfaceMotion, AttachedVerticesFollowARecordedObstacle) {

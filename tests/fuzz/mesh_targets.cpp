@@ -94,7 +94,12 @@ void stl(std::string_view bytes) { require_valid(parse_stl("file", bytes)); }
 
 void gltf(std::string_view bytes) {
   const ReadBeside none = [](const std::string& name) -> std::string { throw InvalidInput(name + ": is not there"); };
-  require_valid(parse_gltf("file", bytes, none));
+  const MeshContent rest = parse_gltf("file", bytes, none);
+  require_valid(rest);
+  for (const std::vector<Vec3d>& vertices : parse_gltf_motion("file", bytes, none, {.rate = 24}).vertices) {
+    require_finite(vertices);
+    require(vertices.size() == rest.vertices.size(), "each sample has the vertices of the mesh");
+  }
 }
 
 void tetgen(std::string_view bytes) {

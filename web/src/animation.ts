@@ -6,6 +6,7 @@ import type { FileReply, Query, Recording, SideName, State } from "./protocol";
 import type { Store } from "./store";
 import { saveReply } from "./upload";
 import type { Video } from "./video";
+import type { CameraRig } from "./view/cameras";
 
 type Format = Extract<Query, { ask: "animation" }>["format"];
 const kFormats: Record<Format | "video" | "gif", string> = {
@@ -16,16 +17,16 @@ const kFormats: Record<Format | "video" | "gif", string> = {
   gif: "GIF of the view, while the session repeats itself",
 };
 
-export function openAnimation(store: Store, page: Page, video: Video): void {
+export function openAnimation(store: Store, page: Page, video: Video, camera: (side: SideName) => CameraRig): void {
   const format = selectOf(Object.entries(kFormats));
   const side = selectOf([["a", "A"], ["b", "B"]]);
   const run = (): Promise<void> => {
     if (format.value === "video") return videoOfSession(store, video);
     if (format.value === "gif") return gifOfSession(store, page, video);
-    return saveAnimation(store, page, side.value as SideName, format.value as Format);
+    return saveAnimation(store, page, { side: side.value as SideName, format: format.value as Format }, camera(side.value as SideName));
   };
   const fields = [
-    element("p", {}, "The surface at the steps in the timeline, from the start to now, including drags."),
+    element("p", {}, "The surface at the steps in the timeline, from the start to now, including drags. USD and glTF contain the camera of the view."),
     labeled("Format", format),
     store.side("b") && labeled("Side", side),
   ];
@@ -35,8 +36,10 @@ export function openAnimation(store: Store, page: Page, video: Video): void {
   ]);
 }
 
-async function saveAnimation(store: Store, page: Page, side: SideName, format: Format): Promise<void> {
-  const reply = await store.source.ask<FileReply>({ ask: "animation", side, format });
+async function saveAnimation(store: Store, page: Page, what: { side: SideName; format: Format }, rig: CameraRig): Promise<void> {
+  const { eye, right, up, slope, extent } = rig.lens(16, 9);
+  const camera = { eye, right, up, slope: slope || extent / rig.distance, nearest: rig.distance / 100 };
+  const reply = await store.source.ask<FileReply>({ ask: "animation", ...what, camera });
   saveReply(reply);
   page.notice(`${reply.name}: ${reply.note ?? ""}`);
 }

@@ -10,6 +10,7 @@ import { shortcutButton } from "./shortcuts";
 import type { Store } from "./store";
 import { isSceneOrMesh, prepareUpload, saveReply } from "./upload";
 import type { Video } from "./video";
+import type { CameraRig } from "./view/cameras";
 import { isWorkspace, openWorkspace, parseRecording, parseWorkspace, saveWorkspace } from "./workspace";
 
 const kLargestFile = 50e6; // largest workspace or recording [bytes]
@@ -21,6 +22,7 @@ export class Files {
     private readonly page: Page,
     private readonly video: Video,
     private readonly sharing: Sharing | null,
+    private readonly camera: (side: SideName) => CameraRig,
   ) {}
 
   // Includes the commands that make pictures. A recorded run has fewer commands.
@@ -36,7 +38,7 @@ export class Files {
       this.item("Shift+R", "Save the recording of the mouse", false, () => this.try(this.saveRecording())),
       this.item("Shift+P", "Repeat the session from its start", true, () => this.try(this.replayNow())),
       this.item("Shift+M", "Save the deformed mesh", false, () => this.openMesh()),
-      this.item("Shift+E", "Export the motion (USD, glTF, PC2, video, GIF)", false, () => openAnimation(this.store, this.page, this.video)),
+      this.item("Shift+E", "Export the motion (USD, glTF, PC2, video, GIF)", false, () => openAnimation(this.store, this.page, this.video, this.camera)),
       scene,
       ...this.shareItems(),
       ...pictures,

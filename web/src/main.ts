@@ -69,7 +69,7 @@ function buildPage(store: Store, page: Page, sharing: Sharing | null): void {
   const lecture = new Lecture(area("left"), store, page, (question) => functions.open(question));
   const video = new Video(store, page, views.draw);
   area("views").append(video.indicator);
-  const files = new Files(store, page, video, sharing).makeMenu([makeScreenshotButton(store, page, views.draw), video.opener]);
+  const files = new Files(store, page, video, sharing, (side) => display.camera(side)).makeMenu([makeScreenshotButton(store, page, views.draw), video.opener]);
   const live = store.source.live ? [makeCompareButton(store, page), lecture.opener] : [];
   makeToolbar(area("toolbar"), store, page, theme, [makeRole(store), ...live, files, sidebar.opener]);
   listenToKeys(page);

@@ -56,7 +56,7 @@ export type Query =
   | { ask: "mesh"; side: SideName; format: "obj" | "ply" | "vtu" | "msh" | "mesh" } // mesh as deformed now
   | { ask: "scene"; side: SideName } // the complete scene for `aspic run`, including drags
   | { ask: "scene_files"; side: SideName } // the same without drags, for the command "load"
-  | { ask: "animation"; side: SideName; format: "usd" | "pc2" | "glb" } // motion over the steps in the timeline
+  | { ask: "animation"; side: SideName; format: "usd" | "pc2" | "glb"; camera: unknown } // motion over the steps in the timeline
   | { ask: "gallery" } // scenes to choose from
   | { ask: "recording" }
   | { ask: "fit_state" | "fit_report" }; // of an extension

@@ -13,6 +13,7 @@ bl_info = {
     "category": "Physics",
 }
 
+KEYS = []
 CLASSES = (*settings.CLASSES, *operators.CLASSES, *panel.CLASSES)
 
 
@@ -22,10 +23,17 @@ def register():
     bpy.types.Object.aspic = bpy.props.PointerProperty(type=settings.ObjectSettings)
     bpy.types.Scene.aspic = bpy.props.PointerProperty(type=settings.SceneSettings)
     bpy.app.handlers.load_pre.append(operators.stop_before_load)
+    keys = bpy.context.window_manager.keyconfigs.addon
+    if keys:
+        keymap = keys.keymaps.new(name="Window")
+        KEYS.append((keymap, keymap.keymap_items.new("aspic.cancel", "ESC", "PRESS")))
 
 
 def unregister():
     operators.stop()
+    while KEYS:
+        keymap, item = KEYS.pop()
+        keymap.keymap_items.remove(item)
     bpy.app.handlers.load_pre.remove(operators.stop_before_load)
     del bpy.types.Scene.aspic
     del bpy.types.Object.aspic

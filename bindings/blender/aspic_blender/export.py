@@ -83,6 +83,17 @@ def obstacle_text(name, sampled, folder, preroll, fps):
     return files.table("[obstacle]", keys)
 
 
+def wind_text(winds, preroll, fps):
+    """The sum of the winds. Formulas are short, so it is linear between at most 24 frames."""
+    velocity = np.sum([wind.frames for wind in winds], axis=0)
+    kept = np.unique(np.linspace(0, len(velocity) - 1, 24).round().astype(int))
+    time, velocity = (kept + preroll) / fps, velocity[kept]
+    bends = np.diff(np.diff(velocity, axis=0) / np.diff(time)[:, None], axis=0, prepend=0)
+    terms = [[f"{v:.5g}"] + [f"{b:.5g} * max(0, t - {t:.5g})" for b, t in zip(bent, time) if abs(b) > 1e-6]
+             for v, bent in zip(velocity[0], bends.T)]
+    return files.table("wind", {"velocity": [" + ".join(t) for t in terms]})
+
+
 def simulated(scene, *roles):
     return [ob for ob in scene.objects if ob.type == "MESH" and ob.aspic.role in roles and not ob.hide_render]
 
@@ -96,7 +107,9 @@ def write(context):
     for ob in bodies:
         if ob.library or ob.mode == "EDIT":
             raise sample.Refused(f"{ob.name} is " + ("linked; make it local" if ob.library else "in edit mode; leave it"))
-    sampled = sample.sample(context, bodies + obstacles)
+    is_windy = any(ob.aspic.role == "CLOTH" for ob in bodies)
+    winds = [sample.Wind(ob) for ob in scene.objects if is_windy and ob.field and ob.field.type == "WIND"]
+    sampled = sample.sample(context, bodies + obstacles, winds)
     os.makedirs(folder, exist_ok=True)
     preroll = scene.aspic.preroll if any(s.pin is not None and s.is_posed for s in sampled[:len(bodies)]) else 0
     fps = scene.render.fps / scene.render.fps_base
@@ -107,6 +120,8 @@ def write(context):
     text += files.table("output", {"every": 1 / fps, "vtu": False, "usd": False})
     if scene.aspic.collide or any(ob.aspic.role == "CLOTH" for ob in bodies):
         text += "[contact]\n"
+    if winds:
+        text += wind_text(winds, preroll, fps)
     named = list(zip(names(bodies + obstacles), sampled))
     for name, each in named[:len(bodies)]:
         text += body_text(name, each, folder, preroll, fps)

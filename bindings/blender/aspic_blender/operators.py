@@ -1,11 +1,12 @@
 """Bake, continue, cancel, remove, and open the report."""
 import os
 import pathlib
+import time
 
 import bpy
 from bpy.app.handlers import persistent
 
-from . import export, process, results, sample
+from . import export, process, results, sample, settings
 
 active = None  # the simulation that runs
 
@@ -28,8 +29,9 @@ def stop_before_load(*_):
     stop()
 
 
-def redraw():
+def redraw(status=None):
     for window in bpy.context.window_manager.windows:
+        window.workspace.status_text_set(status)
         for area in window.screen.areas:
             area.tag_redraw()
 
@@ -51,6 +53,18 @@ def outcome(run):
     return "INFO", f"Baked {text}"
 
 
+def show_frames(run):
+    """Shows the frames so far, for at most a tenth of the time."""
+    start = time.monotonic()
+    if run.step == 0 or start < run.next_preview:
+        return
+    try:
+        results.apply(run.folder)
+    except (sample.Refused, OSError, ValueError):  # the run has not created its files yet
+        return
+    run.next_preview = time.monotonic() + 10 * (time.monotonic() - start)
+
+
 def poll():
     """Called by a timer five times a second."""
     global active
@@ -60,7 +74,9 @@ def poll():
     if active.is_running():
         job = export.read_job(active.folder)
         scene.aspic.status = f"Step {active.step} of {export.steps_of(job)}"
-        redraw()
+        scene.aspic.progress = 100 * active.step / max(export.steps_of(job), 1)
+        show_frames(active)
+        redraw(f"Aspic: {scene.aspic.status}. Esc stops and keeps the frames")
         return 0.2
     _, scene.aspic.status = outcome(active)
     active = None
@@ -138,6 +154,18 @@ class ASPIC_OT_cancel(bpy.types.Operator):
         return {"FINISHED"}
 
 
+class ASPIC_OT_adopt(Idle, bpy.types.Operator):
+    """Choose the roles by Blender's cloth, soft body, collision and rigid body physics, and switch its simulation off"""
+    bl_idname = "aspic.adopt"
+    bl_label = "Use physics of Blender"
+    bl_options = {"UNDO"}
+
+    def execute(self, context):
+        found = [settings.adopt(ob) for ob in context.scene.objects if ob.type == "MESH" and ob.aspic.role == "NONE"]
+        self.report({"INFO"}, f"{sum(found)} objects")
+        return {"FINISHED"}
+
+
 class ASPIC_OT_remove(Idle, bpy.types.Operator):
     """Remove the results from the objects of the scene; the files are kept"""
     bl_idname = "aspic.remove"
@@ -167,4 +195,4 @@ class ASPIC_OT_report(bpy.types.Operator):
         return {"FINISHED"}
 
 
-CLASSES = (ASPIC_OT_bake, ASPIC_OT_continue, ASPIC_OT_cancel, ASPIC_OT_remove, ASPIC_OT_report)
+CLASSES = (ASPIC_OT_bake, ASPIC_OT_continue, ASPIC_OT_cancel, ASPIC_OT_adopt, ASPIC_OT_remove, ASPIC_OT_report)

@@ -57,8 +57,11 @@ class ASPIC_PT_sidebar(bpy.types.Panel):
         row.operator("aspic.cancel" if operators.active else "aspic.bake")
         row.operator("aspic.continue_bake")
         row = layout.row(align=True)
+        row.operator("aspic.adopt")
         row.operator("aspic.report")
         row.operator("aspic.remove")
+        if operators.active:
+            layout.prop(scene.aspic, "progress", slider=True)
         for line in scene.aspic.status.splitlines():
             layout.label(text=line)
 

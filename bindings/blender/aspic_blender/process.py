@@ -15,6 +15,7 @@ class Run:
     def __init__(self, program, folder, arguments):
         self.folder = folder
         self.step = 0
+        self.next_preview = 0.0
         environment = dict(os.environ)
         found = shutil.which(program)
         if not found:

@@ -122,6 +122,17 @@ class Sampled:
         return float(np.median(np.linalg.norm(np.concatenate([b - a, c - b, a - c]), axis=1)))
 
 
+class Wind:
+    """A wind field over the frames of the scene: velocities of the air [m/s]."""
+
+    def __init__(self, ob):
+        self.ob, self.frames = ob, []
+
+    def add(self, evaluated, _frame):
+        axis = np.array(evaluated.matrix_world)[:3, 2]
+        self.frames.append(evaluated.field.strength * axis / np.linalg.norm(axis))
+
+
 def young(settings, weight):
     low, high = settings.young_min, settings.young_max
     if settings.scale == "LOG":
@@ -129,17 +140,17 @@ def young(settings, weight):
     return (1 - weight) * low + weight * high
 
 
-def sample(context, objects):
-    """Samples objects in all frames of the scene."""
+def sample(context, objects, winds):
+    """Samples objects and winds in all frames of the scene."""
     scene, unit = context.scene, context.scene.unit_settings.scale_length
     current = scene.frame_current, scene.frame_subframe
     sampled = [Sampled(ob, unit) for ob in objects]
-    with without_generated([ob for ob in objects if ob.aspic.role == "BODY"]):
+    with without_generated([ob for ob in objects if ob.aspic.role in SIMULATED]):
         try:
             for frame in range(scene.frame_start, scene.frame_end + 1):
                 scene.frame_set(frame)
                 graph = context.evaluated_depsgraph_get()
-                for each in sampled:
+                for each in (*sampled, *winds):
                     each.add(each.ob.evaluated_get(graph), frame)
         finally:
             scene.frame_set(current[0], subframe=current[1])

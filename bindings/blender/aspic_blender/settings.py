@@ -55,6 +55,23 @@ class ObjectSettings(bpy.types.PropertyGroup):
     friction: FloatProperty(name="Friction", default=0.4, min=0, soft_max=1.5, description="Coefficient of friction")
 
 
+def adopt(ob):
+    """Sets the role of an object by its physics in Blender. Returns whether it has any."""
+    ours = ob.aspic
+    for modifier in ob.modifiers:
+        if modifier.type == "CLOTH":
+            ours.role, ours.pin_group = "CLOTH", modifier.settings.vertex_group_mass
+        elif modifier.type == "SOFT_BODY":
+            ours.role, ours.pin_group = "BODY", modifier.settings.vertex_group_goal
+        elif modifier.type == "COLLISION" and ours.role == "NONE":
+            ours.role = "OBSTACLE"
+        if modifier.type in ("CLOTH", "SOFT_BODY"):
+            modifier.show_viewport = modifier.show_render = False
+    if ob.rigid_body and ours.role == "NONE":
+        ours.role, ours.friction = "OBSTACLE", ob.rigid_body.friction
+    return ours.role != "NONE"
+
+
 class SceneSettings(bpy.types.PropertyGroup):
     substeps: IntProperty(name="Steps per frame", default=4, min=1, max=100, description="More for fast contact")
     preroll: IntProperty(name="Preroll", default=12, min=1, max=1000,
@@ -63,6 +80,7 @@ class SceneSettings(bpy.types.PropertyGroup):
     collide: BoolProperty(name="Bodies collide", default=False,
                           description="Soft bodies touch each other and themselves; obstacles switch this on")
     folder: StringProperty(name="Folder", subtype="DIR_PATH", description="Default: beside the .blend file")
+    progress: FloatProperty(name="Progress", subtype="PERCENTAGE", max=100, options={"SKIP_SAVE"})
     status: StringProperty(name="Status", options={"SKIP_SAVE"})
 
 

@@ -2,6 +2,7 @@
 import math
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -73,6 +74,10 @@ def shown(ob, frame):
 
 def simulated(folder, name):
     return files.read_pc2(os.path.join(folder, "run", "skins", f"skin_{name}.pc2"))
+
+
+def obj_vertices(path):
+    return np.array([line.split()[1:4] for line in path.read_text().splitlines() if line.startswith("v ")], float)
 
 
 def check_shows(ob, folder, name, start=1, unit=1):
@@ -223,12 +228,14 @@ def timer_shows_progress_and_applies():
     folder = export.write(bpy.context)
     operators.active = process.Run(operators.program(bpy.context), folder,
                                    [os.path.join(folder, "scene.toml"), "--out", results.run_folder(folder), "--force"])
-    seen, deadline = set(), time.time() + 120
+    seen, shown_early, deadline = set(), False, time.time() + 120
     while operators.poll() is not None and time.time() < deadline:
         seen.add(bpy.context.scene.aspic.status)
+        shown_early |= "Aspic" in ob.modifiers and 0 < bpy.context.scene.aspic.progress < 100
         time.sleep(0.02)
     check(operators.active is None and bpy.context.scene.aspic.status == "Baked 12 frames")
     check(any(text.endswith("of 44") for text in seen), seen)
+    check(shown_early, "no frames before the end")
     check_shows(ob, folder, "Ball")
 
 
@@ -391,6 +398,109 @@ def cloth_drapes_over_obstacle():
 
 
 @scenario
+def wind_of_blender_blows():
+    scene = bpy.context.scene
+    scene.use_gravity = False
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=6, y_subdivisions=6, size=0.4)
+    cloth = bpy.context.object
+    cloth.aspic.role, cloth.name = "CLOTH", "Flag"
+    cloth.aspic.pin_group = paint(cloth, "edge", lambda x: float(x.x < -0.19))
+    bpy.ops.object.effector_add(type="WIND", rotation=(0.4, 0, 0))
+    wind = bpy.context.object
+    for frame, strength in ((1, 0), (20, 8), (40, 3)):
+        wind.field.strength = strength
+        wind.field.keyframe_insert("strength", frame=frame)
+    folder = bake(40)
+    text = pathlib.Path(folder, "scene.toml").read_text(encoding="utf-8")
+    formulas = re.search(r"\[wind\]\nvelocity = (\[.*\])", text).group(1)
+    for frame in (1, 7, 20, 40):
+        scene.frame_set(frame)
+        expected = wind.field.strength * np.array([0, -math.sin(0.4), math.cos(0.4)])
+        velocity = [eval(formula, {"t": (frame - 1) / 24, "max": max}) for formula in eval(formulas)]
+        check(np.abs(velocity - expected).max() < 0.1, frame, velocity, expected)
+    start, x = shown(cloth, 1), shown(cloth, 40)
+    check(x[:, 2].max() > 0.02 and np.abs(x - start)[start[:, 0] < -0.199].max() < SINGLE, x[:, 2].max())
+    bake(3)  # again: pins stay where the animation has them, not where the first bake left them
+    check("recording" not in pathlib.Path(folder, "scene.toml").read_text(encoding="utf-8"))
+
+
+@scenario
+def physics_of_blender_are_adopted():
+    cloth, solid, wall, brick = (ball(name, at=(i, 0, 0), role="NONE") for i, name in
+                                 enumerate(("Cloth", "Solid", "Wall", "Brick")))
+    cloth.modifiers.new("Cloth", "CLOTH").settings.vertex_group_mass = paint(cloth, "held", lambda x: float(x.z > 0))
+    solid.modifiers.new("Softbody", "SOFT_BODY")
+    wall.modifiers.new("Collision", "COLLISION")
+    bpy.ops.object.select_all(action="DESELECT")
+    bpy.context.view_layer.objects.active = brick
+    bpy.ops.rigidbody.object_add(type="PASSIVE")
+    brick.rigid_body.friction = 0.7
+    bpy.ops.aspic.adopt()
+    check([ob.aspic.role for ob in (cloth, solid, wall, brick)] == ["CLOTH", "BODY", "OBSTACLE", "OBSTACLE"])
+    check(cloth.aspic.pin_group == "held" and abs(brick.aspic.friction - 0.7) < SINGLE)
+    check(not cloth.modifiers["Cloth"].show_viewport and wall.modifiers["Collision"].show_viewport)
+
+
+@scenario
+def animated_gltf_moves_like_the_armature():
+    """An obstacle from a GLB file of Blender has the vertices that Blender evaluates, for sampled and cubic curves."""
+    scene = bpy.context.scene
+    ball(at=(5, 0, 0))  # a body, which scenes need
+    bpy.ops.object.armature_add(location=(0.1, 0, -0.3), rotation=(0.2, 0.1, 0.4), scale=(1, 1, 1))
+    rig = bpy.context.object
+    bpy.ops.object.mode_set(mode="EDIT")
+    second = rig.data.edit_bones.new("Upper")
+    second.head, second.tail, second.parent = (0, 0, 1), (0, 0.2, 1.8), rig.data.edit_bones["Bone"]
+    bpy.ops.object.mode_set(mode="OBJECT")
+    rig.scale = (1.2, 1.2, 1.2)
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=3, radius=1)
+    figure = bpy.context.object
+    figure.parent = rig
+    paint(figure, "Bone", lambda x: (1 - x.z) / 2)
+    paint(figure, "Upper", lambda x: (1 + x.z) / 2)
+    figure.modifiers.new("Rig", "ARMATURE").object = rig
+    for frame, angle in ((0, 0), (7, 0.9), (12, -0.5)):
+        rig.location.y = angle
+        rig.keyframe_insert("location", frame=frame)
+        for bone in rig.pose.bones:
+            bone.rotation_quaternion = (math.cos(angle / 2), math.sin(angle / 2), 0, 0)
+            bone.location.x, bone.scale.y = 0.2 * angle, 1 + 0.3 * angle
+            for path in ("rotation_quaternion", "location", "scale"):
+                bone.keyframe_insert(path, frame=frame)
+    scene.frame_start, scene.frame_end = 0, 12
+    scene.frame_set(0)
+    expected = [shown(figure, frame) for frame in range(13)]
+    folder = pathlib.Path(export.folder_of(bpy.context))
+    bpy.ops.object.select_all(action="DESELECT")
+    figure.select_set(True)
+    rig.select_set(True)
+    for is_sampled in (True, False):
+        bpy.ops.export_scene.gltf(filepath=str(folder / "figure.glb"), use_selection=True,
+                                  export_force_sampling=is_sampled, export_yup=False)
+        (folder / "scene.toml").write_text("""
+            [time]
+            step = 0.041666666666666667
+            duration = 0.5
+            [output]
+            obj = true
+            [[body]]
+            shape = { box = { upper = [1, 1, 1], cells = [1, 1, 1] } }
+            translate = [9, 9, 9]
+            [[obstacle]]
+            mesh = "figure.glb"
+            recording = { file = "figure.glb" }
+            """, encoding="utf-8")
+        run = folder / "run"
+        subprocess.run([operators.program(bpy.context), "run", folder / "scene.toml", "--out", run, "--force", "--quiet"], check=True)
+        moved = [obj_vertices(run / "frames" / f"obstacle_obstacle1_{frame:06}.obj") for frame in range(13)]
+        nearest = [np.argmin(np.linalg.norm(expected[0] - x, axis=1)) for x in moved[0]]
+        check(len(set(nearest)) == len(expected[0]), len(set(nearest)))
+        worst = max(np.abs(x[nearest] - y).max() for x, y in zip(expected, moved))
+        print(f"GLB {'sampled' if is_sampled else 'cubic'}: largest difference from Blender {worst:.1e} m")
+        check(worst < 1e-5, worst)
+
+
+@scenario
 def generating_modifiers_follow():
     ob = ball()
     ob.modifiers.new("Smooth", "SMOOTH").iterations = 0
@@ -468,6 +578,8 @@ def addon_can_be_disabled_and_enabled():
     check(not hasattr(ob, "aspic"))
     check_shows(ob, folder, "Ball")  # the modifier is Blender's own
     aspic_blender.register()
+    keys = bpy.context.window_manager.keyconfigs.addon.keymaps["Window"].keymap_items
+    check([key.type for key in keys if key.idname == "aspic.cancel"] == ["ESC"])
     check(ob.aspic.role == "BODY")
     bake(3)
 

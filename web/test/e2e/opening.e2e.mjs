@@ -67,10 +67,12 @@ test("the motion is exported for other programs", async () => {
   };
   const [usdName, usd] = await exported("usd");
   assert.equal(usdName, "cantilever.usda");
-  assert.ok(/^#usda 1\.0[^]*endTimeCode = 3/.test(String(usd)), String(usd).slice(0, 300));
+  assert.ok(/^#usda 1\.0[^]*endTimeCode = 3[^]*def Camera "view"/.test(String(usd)), String(usd).slice(0, 300));
   const [glbName, glb] = await exported("glb");
   assert.equal(glbName, "cantilever.glb");
-  assert.equal(JSON.parse(glb.subarray(20, 20 + glb.readUInt32LE(12))).meshes[0].primitives[0].targets.length, 3);
+  const { meshes, cameras } = JSON.parse(glb.subarray(20, 20 + glb.readUInt32LE(12)));
+  assert.equal(meshes[0].primitives[0].targets.length, 3);
+  assert.ok(Math.abs(cameras[0].perspective.yfov - Math.PI / 6) < 1e-6, JSON.stringify(cameras));
   assert.equal((await exported("pc2"))[0], "cantilever_pc2.zip");
   const [videoName, video] = await exported("video");
   assert.match(videoName, /^cantilever\.(mp4|webm)$/);
@@ -78,7 +80,8 @@ test("the motion is exported for other programs", async () => {
   for (const step of [4, 5, 6, 7, 8]) await atStep(opened, step);
   const [gifName, gif] = await exported("gif");
   assert.equal(gifName, "cantilever.gif");
-  if (process.env.ASPIC_PICTURES) writeFileSync(join(process.env.ASPIC_PICTURES, "exported.gif"), gif);
+  if (process.env.ASPIC_PICTURES)
+    for (const [name, file] of [["gif", gif], ["glb", glb], ["usda", usd]]) writeFileSync(join(process.env.ASPIC_PICTURES, `exported.${name}`), file);
   // The browser reads it.
   const seen = await page.evaluate(async (base64) => {
     const data = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
