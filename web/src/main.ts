@@ -54,6 +54,7 @@ function buildPage(store: Store, page: Page, sharing: Sharing | null): void {
   const theme = new Theme(page);
   const display = new Display();
   suitScenes(store, display);
+  if (store.source instanceof RecordedSource) suitFigures(store.source, store);
   const views = new Views(area("views"), store, page, display);
   const functions = new FunctionsPanel(store, page);
   const chosen = new Chosen(store, page);
@@ -84,6 +85,14 @@ function suitScenes(store: Store, display: Display): void {
   };
   store.on("fibres", () => store.name !== withFibres && suit(store.name));
   store.on("scene", (side) => side === "a" && store.name !== withFibres && withFibres !== "" && suit(""));
+}
+
+// A figure of arrays hides what belongs to simulations.
+function suitFigures(source: RecordedSource, store: Store): void {
+  store.on("scene", () => {
+    document.body.classList.toggle("of-arrays", source.isFigure);
+    document.body.classList.toggle("still", source.isFigure && source.frames.step.length === 1);
+  });
 }
 
 function openPage(source: Source, html: string | null = null): void {

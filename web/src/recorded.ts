@@ -86,6 +86,7 @@ export class RecordedSource implements Source {
   async ask<Reply>(query: Query): Promise<Reply> {
     const recording = this.opened();
     if (query.ask === "scene") {
+      if (recording.isFigure) throw new Error("a figure of arrays has no scene");
       const reply: TextReply = { name: "scene.toml", text: recording.head.toml };
       return reply as Reply;
     }
@@ -103,6 +104,11 @@ export class RecordedSource implements Source {
   // Steps and times of all frames.
   get frames(): { step: number[]; time: number[] } {
     return this.opened().head.frames;
+  }
+
+  // Whether this is a figure of arrays, which has no simulation.
+  get isFigure(): boolean {
+    return this.opened().isFigure;
   }
 
   // Bounding box of all positions of all frames and of the surfaces of obstacles, unless these are so large that the
@@ -141,6 +147,7 @@ export class RecordedSource implements Source {
 
   private greet(recording: Recording): void {
     this.recording = recording;
+    this.field = recording.head.scenes[0].field;
     this.receive({ failures: 0 });
     this.receive({ message: recording.head.hello });
     this.sendSurface();
@@ -246,6 +253,7 @@ export class RecordedSource implements Source {
       min,
       max,
       contacts: recording.contacts(this.frame).at,
+      arrows: recording.arrows(this.frame),
     };
   }
 
@@ -293,7 +301,7 @@ export class RecordedSource implements Source {
       rest: at(geometry.rest),
       position: at(positions),
       velocity: this.velocity(at),
-      mass: weights ? 0 : recording.floats("point.mass")[corners[vertex]],
+      mass: recording.isFigure ? undefined : weights ? 0 : recording.floats("point.mass")[corners[vertex]],
       pinned: this.isPinned(vertex),
       values,
     };
