@@ -63,8 +63,9 @@ function buildPage(store: Store, page: Page, sharing: Sharing | null): void {
   panels.push(makeReportPanel(store, page));
   let dock: Dock;
   if (store.source.live) for (const extension of extensions) extension.addTo(store, page, display, () => dock);
-  const sidebar = new Sidebar(area("right"), page, store.source.live);
-  addDisplayControls(new GUI({ container: sidebar.body, title: "View" }), display, page, views.all);
+  const besideSettings = query.has("settings"); // in a notebook
+  const sidebar = new Sidebar(area("right"), page, store.source.live && !besideSettings);
+  addDisplayControls(new GUI({ container: sidebar.body, title: "View" }).open(!besideSettings), display, page, views.all);
   new Settings(sidebar.body, store, page);
   dock = new Dock(area("dock"), page, panels, store.source.live);
   const lecture = new Lecture(area("left"), store, page, (question) => functions.open(question));

@@ -61,7 +61,7 @@ class View:
         link = f'<a href="{self.address}" target="_blank">Open the live viewer</a>'
         if not self._embed:
             return link
-        return f'<iframe src="{self.address}" style="width: 100%; height: 600px; border: 0"></iframe><br>{link}'
+        return f'<iframe src="{self.address}&settings" style="width: 100%; height: 600px; border: 0"></iframe><br>{link}'
 
     def __repr__(self):
         return f"<View {self.address}>"
