@@ -11,6 +11,17 @@ class Energy:
     value(x): (E,) [J]; gradient(x): (E, k, 3) [N]; hessian(x): (E, k, 3, k, 3) [N/m].
     inf or nan: the energy is not defined there. Negative eigenvalues of element Hessians are modified where a method
     requires it. Add it with scene.energy(...).
+
+    >>> class Floor(aspic.Energy):  # 100 N/m below y = 0
+    ...     elements = np.arange(8)[:, None]
+    ...     def value(self, x):
+    ...         return 50 * np.minimum(x[:, 0, 1], 0) ** 2
+    ...     def gradient(self, x):
+    ...         return 100 * np.minimum(x, 0) * [0, 1, 0]
+    ...     def hessian(self, x):
+    ...         return np.einsum("eac,i,j->eaicj", 100.0 * (x[:, :, 1:2] < 0), [0, 1, 0], [0, 1, 0])
+    >>> aspic.check_derivatives(Floor(), aspic.box(1, 1, origin=(0, -0.5, 0)).vertices).passed
+    True
     """
 
     elements = None
@@ -31,6 +42,13 @@ class TetEnergy(Energy):
     psi(F): (T,) energy density [J/m^3] of F (T, 3, 3); pk1(F): (T, 3, 3) dpsi/dF [Pa]; tangent(F): (T, 3, 3, 3, 3) [Pa].
     Without pk1, psi must accept complex F: its derivative is a complex step. Without tangent, it is a central difference.
     The body usually has elastic=False.
+
+    >>> class Dirichlet(aspic.TetEnergy):
+    ...     def psi(self, F):
+    ...         return 500 * (F ** 2).sum(axis=(1, 2))
+    >>> mesh = aspic.box(1, cells=1)
+    >>> aspic.check_derivatives(Dirichlet(mesh), mesh.vertices).passed
+    True
     """
 
     def __init__(self, mesh, first_vertex=0):
@@ -108,6 +126,10 @@ def check_derivatives(f, x, length=None, tolerance=1e-6, fixed=None):
 
     x: positions, (n, 3) [m], or the point of an objective; perturb the rest shape, where many derivatives vanish.
     length: unit of the steps, by default a tenth of the size of x. fixed: mask of entries that are no variables.
+
+    >>> aspic.check_derivatives(aspic.test_function("rosenbrock"), [-1.2, 1])
+    gradient: smallest relative error ..., order 2.0: correct
+    hessian : smallest relative error ..., order ...: correct
     """
     _aspic.require_bounded(np.asarray(x), "x")
     x = np.array(x, float)

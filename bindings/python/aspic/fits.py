@@ -10,7 +10,11 @@ from .scenes import scene_of
 
 
 def lame(young, poisson):
-    """The Lame constants (mu, lambda) [Pa] of Young's modulus [Pa] and Poisson's ratio; numbers, arrays or tensors."""
+    """The Lame constants (mu, lambda) [Pa] of Young's modulus [Pa] and Poisson's ratio; numbers, arrays or tensors.
+
+    >>> aspic.lame(young=2.5e5, poisson=0.25)
+    (100000.0, 100000.0)
+    """
     return young / (2 * (1 + poisson)), young * poisson / ((1 + poisson) * (1 - 2 * poisson))
 
 
@@ -18,6 +22,13 @@ class Equilibrium(Strict):
     """The body at rest as a function of its material: x(theta) = argmin V(x; theta).
 
     theta: (m, p) parameters per tet: mu, lambda [Pa] and those of the material; `parameters` are those of the scene.
+
+    >>> scene = aspic.Scene()
+    >>> body = scene.add(aspic.box((1, .2, .2), cells=(5, 1, 1))).pin([0, 1, 2, 3])
+    >>> rest = aspic.Equilibrium(scene)
+    >>> x = rest.solve(1.1 * rest.parameters)
+    >>> rest.vjp(np.ones(x.shape)).shape == rest.parameters.shape
+    True
     """
 
     _advice = "give parameters and start to solve()"
@@ -57,7 +68,16 @@ class Equilibrium(Strict):
 
 
 class Trajectory(Strict):
-    """The motion by backward Euler as a function of the material and the initial state."""
+    """The motion by backward Euler as a function of the material and the initial state.
+
+    >>> scene = aspic.Scene()
+    >>> body = scene.add(aspic.box(1, cells=1))
+    >>> motion = aspic.Trajectory(scene, steps=3, h=0.01)
+    >>> motion.simulate().shape
+    (4, 8, 3)
+    >>> sorted(motion.vjp(np.ones(motion.shape)))
+    ['density', 'parameters', 'q', 'v']
+    """
 
     _advice = "give parameters, q and v to simulate()"
 

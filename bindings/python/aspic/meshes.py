@@ -10,6 +10,10 @@ class Mesh:
     """A mesh of tets.
 
     vertices: (n, 3) rest positions [m]; tets: (m, 4) vertices, positively oriented; region: (m,) labels or None.
+
+    >>> mesh = aspic.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 1, 2, 3]])
+    >>> mesh.volumes.round(6).tolist()
+    [0.166667]
     """
 
     def __init__(self, vertices, tets, region=None):
@@ -88,7 +92,11 @@ class Mesh:
 
 
 class Surface:
-    """A mesh of triangles: vertices (n, 3) [m], triangles (m, 3)."""
+    """A mesh of triangles: vertices (n, 3) [m], triangles (m, 3).
+
+    >>> aspic.Surface([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+    <Surface: 3 vertices, 1 triangles>
+    """
 
     def __init__(self, vertices, triangles, path=None):
         self.vertices, self.triangles = _aspic.check_surface(vertices, triangles)
@@ -160,6 +168,9 @@ def sheet(mesh, thickness, **shell):
     """A sheet [m], with the other keys of `shell`: moment, bending, ...
 
     mesh: a Surface, the path of a mesh file, or a dict such as {"rectangle": {"width": 1, "height": 1, "size": 0.05}}.
+
+    >>> scene = aspic.Scene()
+    >>> flag = scene.add(aspic.sheet({"rectangle": {"width": 1, "height": 1, "size": 0.2}}, thickness=1e-3))
     """
     return Thin(mesh, shell={"thickness": thickness, **shell})
 
@@ -169,6 +180,9 @@ def rod(mesh, radius, closed=False, **keys):
 
     mesh: the points (n, 3) of its middle line, joined to a ring if `closed`; the path of a file with lines; or a dict
     such as {"line": {"from": [0, 0, 0], "to": [1, 0, 0], "size": 0.02}}.
+
+    >>> scene = aspic.Scene()
+    >>> cable = scene.add(aspic.rod(np.linspace([0, 0, 0], [1, 0, 0], 11), radius=0.01))
     """
     if not isinstance(mesh, (str, os.PathLike, dict)):
         mesh = Polyline(mesh, closed)
@@ -185,7 +199,12 @@ def _mesher():
 
 
 def read_mesh(path):
-    """Reads a mesh file: a Mesh if it has tets, else a Surface."""
+    """Reads a mesh file: a Mesh if it has tets, else a Surface.
+
+    >>> aspic.box(1, cells=1).write("box.msh")
+    >>> aspic.read_mesh("box.msh")
+    <Mesh: 8 vertices, 6 tets>
+    """
     path = os.fspath(path)
     arrays = _aspic.read_mesh(path)
     return Mesh(*arrays) if len(arrays) == 3 else Surface(*arrays, path)
@@ -195,6 +214,9 @@ def box(size, cells, origin=(0, 0, 0), cut="kuhn"):
     """A box of `size` [m] from `origin`, of cells[0] x cells[1] x cells[2] cells of six tets ("five": of five).
 
     One number for `size` or `cells` holds for all three axes.
+
+    >>> aspic.box((1, 2, 1), cells=(2, 4, 2))
+    <Mesh: 45 vertices, 96 tets>
     """
     low = _three(origin, "origin")
     counts = _three(cells, "cells")
@@ -217,15 +239,24 @@ def _three(value, name):
 
 
 def cylinder(radius, height, size):
-    """A cylinder about the z axis from 0 to `height`, with edges of about `size` [m]."""
+    """A cylinder about the z axis from 0 to `height`, with edges of about `size` [m].
+
+    >>> rod = aspic.cylinder(radius=0.1, height=1, size=0.05)
+    """
     return Mesh(*_aspic.cylinder(radius, height, size))
 
 
 def sphere(radius, size):
-    """A ball about the origin with edges of about `size` [m]."""
+    """A ball about the origin with edges of about `size` [m].
+
+    >>> ball = aspic.sphere(radius=1, size=0.3)
+    """
     return Mesh(*_aspic.sphere(radius, size))
 
 
 def torus(major_radius, minor_radius, size):
-    """A torus about the z axis with edges of about `size` [m]."""
+    """A torus about the z axis with edges of about `size` [m].
+
+    >>> ring = aspic.torus(major_radius=1, minor_radius=0.3, size=0.2)
+    """
     return Mesh(*_aspic.torus(major_radius, minor_radius, size))

@@ -9,7 +9,15 @@ from . import _aspic
 
 
 class Run:
-    """A folder that `aspic run` or a Simulation wrote."""
+    """A folder that `aspic run` or a Simulation wrote.
+
+    >>> scene = aspic.Scene()
+    >>> body = scene.add(aspic.box(0.1, cells=2))
+    >>> reports = aspic.Simulation(scene, h=0.01, out="run").run(3)
+    >>> run = aspic.Run("run")
+    >>> run.positions().shape, run.steps["step"].tolist()
+    ((4, 27, 3), [0, 1, 2, 3])
+    """
 
     def __init__(self, path):
         self.path, self._frame_files = pathlib.Path(path), None

@@ -31,7 +31,11 @@ def _is_list(value):
 
 
 class Material(Strict):
-    """A material by its name, see materials(). Values are numbers, formulas of X, Y, Z, or arrays with one per tet."""
+    """A material by its name, see materials(). Values are numbers, formulas of X, Y, Z, or arrays with one per tet.
+
+    >>> aspic.Material("neo_hookean", young="1e5 * (1 + X)", poisson=0.4)
+    Material('neo_hookean', young='1e5 * (1 + X)', poisson=0.4)
+    """
 
     _advice = "a material is constant: make another one, and give it to body.set(material=...)"
 
@@ -193,7 +197,13 @@ class Body(Strict):
 
 
 class Scene(Strict):
-    """Bodies, obstacles and settings. Keywords are top-level keys and sections: time={...}, solver={...}, contact={...}."""
+    """Bodies, obstacles and settings. Keywords are top-level keys and sections: time={...}, solver={...}, contact={...}.
+
+    >>> scene = aspic.Scene(gravity=(0, -9.81, 0), contact={"friction": 0.3})
+    >>> ball = scene.add(aspic.sphere(radius=0.1, size=0.05), name="ball", translate=[0, 0.2, 0])
+    >>> scene.obstacle(name="floor", plane={})
+    <Scene scene: ball>
+    """
 
     _attributes = ("name", "bodies", "document", "energies")
     _advice = 'use scene.set("{name}", value)'

@@ -45,6 +45,13 @@ class Simulation(Strict):
 
     Changes of the scene afterwards raise in step(): restore(snapshot) continues in a simulation of the changed scene.
     Arrays of properties are read-only copies; assign q or v as a whole.
+
+    >>> scene = aspic.Scene()
+    >>> body = scene.add(aspic.box(0.1, cells=2))
+    >>> sim = aspic.Simulation(scene, h=0.01)
+    >>> reports = sim.run(10, check=True)
+    >>> round(sim.time, 6), round(float(sim.v[:, 1].mean()), 6)
+    (0.1, -0.981)
     """
 
     _advice = "the attributes q and v can be set; other settings belong to the scene or the constructor"
@@ -290,6 +297,13 @@ class Trace:
 
     Columns as in trace/iterations.csv; `trials`: an array per iteration with the columns alpha, value, bound, accepted and
     by_slope. landscape: also sample E along each direction (curves) and on a plane (slices).
+
+    >>> scene = aspic.Scene()
+    >>> body = scene.add(aspic.box(0.1, cells=2)).pin([0])
+    >>> trace = aspic.Trace()
+    >>> report = aspic.Simulation(scene, h=0.01).step(observe=trace)
+    >>> len(trace["gradient_norm"]) == report.iterations
+    True
     """
 
     def __init__(self, landscape=False, samples=41):
@@ -319,6 +333,11 @@ def compare(scene, methods, step=1, max_seconds=60):
     report; trace, the columns index, value, gradient_norm, gradients, hessians and seconds over iterations; the
     fastest of up to three runs [s]; distance, the largest of a vertex from the minimizer [m]; excess, that of E
     relative to the start; same_minimizer; description.
+
+    >>> scene = aspic.Scene()
+    >>> body = scene.add(aspic.box(0.1, cells=2)).pin([0])
+    >>> sorted(aspic.compare(scene, ["newton", "lbfgs"]))
+    ['lbfgs', 'newton']
     """
     scene = scene_of(scene)
     tables = [_solver_keys(method) for method in ([methods] if isinstance(methods, (str, dict)) else methods)]

@@ -1,8 +1,10 @@
 """Stubs, names and documentation of the package."""
+import doctest
 import inspect
 import pathlib
 import re
 
+import numpy as np
 import pytest
 from conftest import ROOT
 
@@ -50,3 +52,19 @@ def test_documentation_names_what_exists():
         assert hasattr(aspic, name) or (folder / f"{name}.py").exists() or (folder / name / "__init__.py").exists(), name
     for link in re.findall(r"\]\((?!https?:)([^)#]+)", text):
         assert (ROOT / "docs" / link).exists() or "inverse/" in link and not (ROOT / "inverse").exists(), link
+
+
+def test_examples_of_docstrings_run(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    found = [test for name in aspic.__all__ for test in doctest.DocTestFinder().find(
+        getattr(aspic, name), f"aspic.{name}", globs={"aspic": aspic, "np": np})]
+    runner = doctest.DocTestRunner(optionflags=doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE)
+    messages = []
+    for test in found:
+        runner.run(test, out=messages.append)
+    assert runner.failures == 0, "".join(messages)
+    # Results of other functions, what the module provides, and what needs a data set, a display or minutes.
+    without = {"Body", "Figure", "Hessian", "InvalidInput", "Iteration", "LinearSolver", "NotConverged", "Objective", "Reports",
+               "Snapshot", "StepReport", "View", "__version__", "capture", "fit", "integrator_names", "linear_solver_names", "materials",
+               "minimizer_names", "plot", "set_thread_count", "test_functions", "thread_count", "verify", "view"}
+    assert {test.name.removeprefix("aspic.") for test in found if test.examples} >= set(aspic.__all__) - without
