@@ -1,7 +1,10 @@
 """Terms of the potential written in Python, and the check of their derivatives."""
+from __future__ import annotations
+
 import numpy as np
 
 from . import _aspic
+from ._checks import Floats
 
 
 class Energy:
@@ -26,13 +29,13 @@ class Energy:
 
     elements = None
 
-    def value(self, x):
+    def value(self, x) -> Floats:
         raise NotImplementedError
 
-    def gradient(self, x):
+    def gradient(self, x) -> Floats:
         raise NotImplementedError
 
-    def hessian(self, x):
+    def hessian(self, x) -> Floats:
         raise NotImplementedError
 
 
@@ -51,17 +54,17 @@ class TetEnergy(Energy):
     True
     """
 
-    def __init__(self, mesh, first_vertex=0):
+    def __init__(self, mesh, first_vertex=0) -> None:
         X = mesh.vertices[mesh.tets]
         self.elements = mesh.tets + first_vertex
         self.volumes = mesh.volumes
         inverse = np.linalg.inv((X[:, 1:] - X[:, :1]).transpose(0, 2, 1))
         self._B = np.concatenate([-inverse.sum(axis=1, keepdims=True), inverse], axis=1)  # F = sum_a x_a B_a'
 
-    def psi(self, F):
+    def psi(self, F) -> Floats:
         raise NotImplementedError
 
-    def pk1(self, F):
+    def pk1(self, F) -> Floats:
         P = np.empty(F.shape)
         for i in range(3):
             for j in range(3):
@@ -70,7 +73,7 @@ class TetEnergy(Energy):
                 P[:, i, j] = np.imag(self.psi(ahead)) / 1e-30
         return P
 
-    def tangent(self, F):
+    def tangent(self, F) -> Floats:
         A = np.empty(F.shape + (3, 3))
         step = 6e-6
         for i in range(3):
@@ -80,19 +83,19 @@ class TetEnergy(Energy):
                 A[..., i, j] = (self.pk1(F + change) - self.pk1(F - change)) / (2 * step)
         return (A + A.transpose(0, 3, 4, 1, 2)) / 2
 
-    def F(self, x):
+    def F(self, x) -> Floats:
         """Deformation gradients, (T, 3, 3), of positions (T, 4, 3)."""
         return np.einsum("tai,taj->tij", x, self._B)
 
-    def value(self, x):
+    def value(self, x) -> Floats:
         with np.errstate(all="ignore"):
             return self.volumes * self.psi(self.F(x))
 
-    def gradient(self, x):
+    def gradient(self, x) -> Floats:
         with np.errstate(all="ignore"):
             return np.einsum("t,tij,taj->tai", self.volumes, self.pk1(self.F(x)), self._B)
 
-    def hessian(self, x):
+    def hessian(self, x) -> Floats:
         with np.errstate(all="ignore"):
             A = self.tangent(self.F(x))
         return np.einsum("t,tijkl,taj,tbl->taibk", self.volumes, A, self._B, self._B, optimize=True)
@@ -101,7 +104,7 @@ class TetEnergy(Energy):
 class DerivativeReport:
     """The result of check_derivatives(): `gradient` and `hessian`, each a dict with step, error, order, passed."""
 
-    def __init__(self, gradient, hessian):
+    def __init__(self, gradient, hessian) -> None:
         self.gradient, self.hessian = gradient, hessian
         self.passed = gradient["passed"] and hessian["passed"]
 
@@ -121,7 +124,7 @@ class DerivativeReport:
         return line + f": WRONG at {place}: {check['found']:.6g} instead of {check['expected']:.6g}"
 
 
-def check_derivatives(f, x, length=None, tolerance=1e-6, fixed=None):
+def check_derivatives(f, x, length=None, tolerance=1e-6, fixed=None) -> DerivativeReport:
     """Compares gradient and Hessian of an Energy or an Objective at x with central differences.
 
     x: positions, (n, 3) [m], or the point of an objective; perturb the rest shape, where many derivatives vanish.

@@ -1,4 +1,6 @@
 """Interactive pictures of arrays."""
+from __future__ import annotations
+
 import json
 import os
 import pathlib
@@ -16,7 +18,7 @@ _LONGEST = 0.15  # length of the longest arrow of the first frame, relative to t
 _MOST_VERTICES = 2_000_000  # three indices fit into a key of 63 bits
 
 
-def show(vertices, faces, scalars=None, vectors=None, path=None):
+def show(vertices, faces, scalars=None, vectors=None, path=None) -> Figure:
     """Shows arrays in 3-D: below the cell of a notebook, else in the browser, or in the HTML file `path`.
 
     vertices: (n, 3) [m]. faces: (m, 3) triangles or (m, 4) tets, whose boundary is shown. scalars: a number per vertex or per
@@ -37,7 +39,7 @@ def show(vertices, faces, scalars=None, vectors=None, path=None):
 class Figure(Player):
     """A surface with quantities, made by show(). It is the last value of a cell, or save() writes it."""
 
-    def __init__(self, vertices, faces, scalars=None, vectors=None):
+    def __init__(self, vertices, faces, scalars=None, vectors=None) -> None:
         self.height, self._frames, self._arrow_scale = 600, [], None
         vertices = _array(vertices, "vertices", [("a row per vertex", (-1, 3))])
         self._counts = {"vertex": len(vertices), "face": 0}
@@ -52,7 +54,7 @@ class Figure(Player):
         self._is_split = any(place == "face" for place, _ in scalars.values())  # triangles share no corners
         self._add(vertices, scalars, vectors)
 
-    def update(self, vertices=None, scalars=None, vectors=None):
+    def update(self, vertices=None, scalars=None, vectors=None) -> Figure:
         """Adds a frame 1/30 s later. What is not given stays. Returns the figure.
 
         >>> mesh = aspic.box((1, 1, 1), cells=2)
@@ -74,7 +76,7 @@ class Figure(Player):
         return self
 
     @property
-    def page(self):
+    def page(self) -> str:
         """The page as HTML, which needs no network."""
         frames, first = self._frames, self._frames[0]
         points = first["points"]
@@ -92,7 +94,7 @@ class Figure(Player):
         arrays = {name: a if a.dtype.itemsize < 8 else a.astype(np.uint32) for name, a in arrays.items()}
         return _aspic.page_of_arrays(json.dumps(self._head(keys)), arrays, [frame["points"] for frame in frames], moving)
 
-    def open(self):
+    def open(self) -> None:
         """Opens the page in the browser, from a temporary file, which stays."""
         path = pathlib.Path(tempfile.mkdtemp(prefix="aspic-figure-")) / "figure.html"
         self.save(path)
@@ -144,8 +146,7 @@ class Figure(Player):
         frames = self._frames
         low, high = (f([f(frame["points"], axis=0) for frame in frames], axis=0).tolist() for f in (np.min, np.max))
         fields = [{"name": keys[name], "label": name, "unit": "", "center": 0, "log": False,
-                   "diverging": bool(min(f["scalars"][name].min() for f in frames) < 0 < max(f["scalars"][name].max() for f in frames))}
-                  for name in self._names]
+                   "diverging": _has_both_signs([frame["scalars"][name] for frame in frames])} for name in self._names]
         scene = {"kind": "scene", "side": "a", "generation": 1, "name": "figure", "label": "", "path": "", "overrides": [],
                  "loaded_overrides": [], "notes": [], "surface": "cage", "has_skin": False, "vertices": self._counts["vertex"],
                  "tets": self._tets, "triangles": self._counts["face"] - self._tets, "bodies": ["figure"], "body_tets": [0],
@@ -153,9 +154,14 @@ class Figure(Player):
                  "potentials": [], "fields": fields, "field": fields[0]["name"] if fields else "", "settings": [], "stiffness": 0}
         count = len(frames)
         return {"format": 1, "toml": "", "steps": [], "scenes": [scene],
-                "hello": {"kind": "hello", "protocol": 1, "version": _aspic.__version__, "steers": True, "live": False, "lessons": []},
+                "hello": {"kind": "hello", "protocol": 1, "version": _aspic.__version__, "steers": True, "live": False,
+                          "lessons": []},
                 "frames": {"step": [*range(count)], "time": [i * _FRAME for i in range(count)], "contacts": [0] * count,
                            "arrows": [len(frame["arrows"]) for frame in frames]}}
+
+
+def _has_both_signs(arrays):
+    return bool(min(a.min() for a in arrays) < 0 < max(a.max() for a in arrays))
 
 
 def _array(value, name, shapes):

@@ -6,7 +6,7 @@ import numpy as np
 from . import _aspic
 
 
-def test_function(name):
+def test_function(name) -> _aspic.Objective:
     """A function of two variables with a known minimum, as an Objective; see test_functions().
 
     >>> float(aspic.test_function("rosenbrock")([1, 1]))
@@ -19,7 +19,7 @@ def _objective(f, x0):
     return f if isinstance(f, _aspic.Objective) else _aspic.PythonObjective(f, np.asarray(x0, float))
 
 
-def minimize(f, x0, direction="newton", line_search=None, observe=None, **options):
+def minimize(f, x0, direction="newton", line_search=None, observe=None, **options) -> types.SimpleNamespace:
     """Minimizes f from x0 and returns an object with x, status, success, value, gradient_norm and iterations.
 
     f: an Objective, such as sim.objective(), or an object with value(x), gradient(x) and, for Newton's method,
@@ -41,7 +41,7 @@ def minimize(f, x0, direction="newton", line_search=None, observe=None, **option
     return types.SimpleNamespace(**_aspic.minimize(E, x0, direction, options, observe))
 
 
-def backtrack(E, x, d, g, alpha=1.0, c=1e-4, p=0.5, smallest=1e-10):
+def backtrack(E, x, d, g, alpha=1.0, c=1e-4, p=0.5, smallest=1e-10) -> float:
     """The lecture's line search: the first alpha, alpha p, alpha p^2, ... of sufficient decrease up to round-off; 0: none.
 
     >>> E = aspic.test_function("rosenbrock")

@@ -26,16 +26,27 @@ def test_stubs_list_the_names_of_the_module():
         assert listed == members, name
 
 
-def test_public_names_have_docstrings():
+def public_callables():
+    """Names and values of the functions of the package, and of the methods and properties of its classes."""
     for name in aspic.__all__:
         thing = getattr(aspic, name)
-        if name == "__version__":
+        if not getattr(thing, "__module__", "").startswith("aspic."):
             continue
-        assert inspect.getdoc(thing), name
-        if inspect.isclass(thing) and thing.__module__.startswith("aspic.") and not issubclass(thing, aspic.Energy):
+        if not inspect.isclass(thing):
+            yield name, thing
+        elif not issubclass(thing, aspic.Energy):
+            yield name, thing
             for member, value in vars(thing).items():
+                value = value.fget if isinstance(value, property) else getattr(value, "__func__", value)
                 if not member.startswith("_") and callable(value):
-                    assert inspect.getdoc(value), f"{name}.{member}"
+                    yield f"{name}.{member}", value
+
+
+def test_public_names_have_docstrings_and_types():
+    for name, value in public_callables():
+        assert inspect.getdoc(value), name
+        if inspect.isfunction(value):  # others are typed by the stub
+            assert "return" in value.__annotations__, name
 
 
 def test_old_processor_is_refused_in_words(tmp_path):
