@@ -112,6 +112,22 @@ material = { model = "neo_hookean", young = 1e5, poisson = 0.3, density = 1000 }
   EXPECT_GT(moved, 0.05f);
 }
 
+TEST(ContactView, FrictionCanBeChangedWhileTheCubeSlides) {
+  const auto distance = [](const Json& friction) {  // of the first vertex after ten steps
+    std::string scene = kRestingCube;
+    scene.replace(scene.find("[[obstacle]]"), 0, "velocity = [0.5, 0, 0]\n");
+    Page page(scene);
+    page.send({{"do", "set"}, {"key", "contact.friction"}, {"value", friction}});
+    const float start = page.picture().positions[0];
+    page.steps(10);
+    return page.picture().positions[0] - start;
+  };
+  EXPECT_LT(distance(1), 0.7f * distance(0));
+  Page page;
+  EXPECT_NE(page.refused({{"do", "set"}, {"key", "contact.friction"}, {"value", 1}}).find("cannot be changed"),
+            std::string::npos);
+}
+
 TEST(ContactView, ScenesWithoutContactHaveNoContactPoints) {
   Page page;
   page.steps(1);

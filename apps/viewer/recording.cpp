@@ -369,13 +369,16 @@ RecordedRun record(const fs::path& run, const Scene& scene, const RecordingOptio
   return Recorder(run, scene, options).record();
 }
 
+std::string page_with_recording(std::string_view text) {
+  return page_with(fmt::format("<script type=\"application/json\" id=\"recording\">\"{}\"</script>", text));
+}
+
 RecordedRun make_report(const fs::path& run, const Scene& scene, const RecordingOptions& options) {
-  constexpr std::string_view kBegin = "<script type=\"application/json\" id=\"recording\">\"", kEnd = "\"</script>";
-  const size_t page_alone = page_with("").size() + kBegin.size() + kEnd.size();
+  const size_t page_alone = page_with_recording("").size();
   if (page_alone >= options.max_bytes)
     throw InvalidInput(fmt::format("--max-size: the page alone has {:.1f} MB; allow more", page_alone / 1e6));
   RecordedRun report = record(run, scene, {.max_bytes = options.max_bytes - page_alone});
-  report.text = page_with(fmt::format("{}{}{}", kBegin, report.text, kEnd));
+  report.text = page_with_recording(report.text);
   return report;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "scene/scene.h"
 
@@ -25,5 +26,8 @@ RecordedRun record(const std::filesystem::path& run, const Scene& scene, const R
 
 // Returns one self-contained HTML file: the viewer's page with the recording. Throws InvalidInput like record().
 RecordedRun make_report(const std::filesystem::path& run, const Scene& scene, const RecordingOptions& options = {});
+
+// Returns the page with a recording: the text of record(), or of another pack of that format.
+std::string page_with_recording(std::string_view text);
 
 }  // namespace aspic::viewer

@@ -30,6 +30,7 @@ const std::vector<Row>& rows() {
       {"time.step", "Time step h", "Time", 1e-5, 0.1, true},
       {"time.integrator", "Integrator", "Time"},
       {"gravity", "Gravity", "World", -20, 20},
+      {"contact.friction", "Friction coefficient", "World", 0, 1},
       {"solver.method", "Method", "Solver"},
       {"solver.definiteness", "Indefinite Hessian", "Solver"},
       {"solver.linear", "Linear solver", "Solver"},

@@ -54,6 +54,7 @@ function buildPage(store: Store, page: Page, sharing: Sharing | null): void {
   const theme = new Theme(page);
   const display = new Display();
   suitScenes(store, display);
+  if (store.source instanceof RecordedSource) suitFigures(store.source, store);
   const views = new Views(area("views"), store, page, display);
   const functions = new FunctionsPanel(store, page);
   const chosen = new Chosen(store, page);
@@ -62,8 +63,9 @@ function buildPage(store: Store, page: Page, sharing: Sharing | null): void {
   panels.push(makeReportPanel(store, page));
   let dock: Dock;
   if (store.source.live) for (const extension of extensions) extension.addTo(store, page, display, () => dock);
-  const sidebar = new Sidebar(area("right"), page, store.source.live);
-  addDisplayControls(new GUI({ container: sidebar.body, title: "View" }), display, page, views.all);
+  const besideSettings = query.has("settings"); // in a notebook
+  const sidebar = new Sidebar(area("right"), page, store.source.live && !besideSettings);
+  addDisplayControls(new GUI({ container: sidebar.body, title: "View" }).open(!besideSettings), display, page, views.all);
   new Settings(sidebar.body, store, page);
   dock = new Dock(area("dock"), page, panels, store.source.live);
   const lecture = new Lecture(area("left"), store, page, (question) => functions.open(question));
@@ -84,6 +86,14 @@ function suitScenes(store: Store, display: Display): void {
   };
   store.on("fibres", () => store.name !== withFibres && suit(store.name));
   store.on("scene", (side) => side === "a" && store.name !== withFibres && withFibres !== "" && suit(""));
+}
+
+// A figure of arrays hides what belongs to simulations.
+function suitFigures(source: RecordedSource, store: Store): void {
+  store.on("scene", () => {
+    document.body.classList.toggle("of-arrays", source.isFigure);
+    document.body.classList.toggle("still", source.isFigure && source.frames.step.length === 1);
+  });
 }
 
 function openPage(source: Source, html: string | null = null): void {

@@ -262,7 +262,7 @@ export interface VertexReply {
   rest: Vec3;
   position: Vec3; // [m]
   velocity: Vec3; // [m/s]
-  mass: number; // [kg]
+  mass?: number; // [kg]; missing in a figure of arrays
   pinned: boolean;
   values: Record<string, MaybeNumber>; // value of every field at the vertex
 }
@@ -374,6 +374,7 @@ export interface Picture {
   values: Float32Array | null; // n values of Scene.field
   min: number; // smallest value on the surface; equal to max for a constant field
   max: number;
+  arrows?: Float32Array; // start and vector of each arrow of a figure of arrays [m]
   contacts: Float32Array; // 4 k: points closer to another surface than the reach [m], and the pressure there [Pa]
 }
 

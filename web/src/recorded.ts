@@ -96,6 +96,7 @@ export class RecordedSource implements Source {
   async ask<Reply>(query: Query): Promise<Reply> {
     const recording = this.opened();
     if (query.ask === "scene") {
+      if (recording.isFigure) throw new Error("a figure of arrays has no scene");
       const reply: TextReply = { name: "scene.toml", text: recording.head.toml };
       return reply as Reply;
     }
@@ -113,6 +114,11 @@ export class RecordedSource implements Source {
   // Steps and times of all frames.
   get frames(): { step: number[]; time: number[] } {
     return this.opened().head.frames;
+  }
+
+  // Whether this is a figure of arrays, which has no simulation.
+  get isFigure(): boolean {
+    return this.opened().isFigure;
   }
 
   // Points that a picture of the run should show: those of bodies in all frames, thinned, and of the surfaces of obstacles,
@@ -152,6 +158,7 @@ export class RecordedSource implements Source {
 
   private greet(recording: Recording): void {
     this.recording = recording;
+    this.field = recording.head.scenes[0].field;
     this.receive({ failures: 0 });
     this.receive({ message: recording.head.hello });
     this.sendSurface();
@@ -257,6 +264,7 @@ export class RecordedSource implements Source {
       min,
       max,
       contacts: recording.contacts(this.frame).at,
+      arrows: recording.arrows(this.frame),
     };
   }
 
@@ -304,7 +312,7 @@ export class RecordedSource implements Source {
       rest: at(geometry.rest),
       position: at(positions),
       velocity: this.velocity(at),
-      mass: weights ? 0 : recording.floats("point.mass")[corners[vertex]],
+      mass: recording.isFigure ? undefined : weights ? 0 : recording.floats("point.mass")[corners[vertex]],
       pinned: this.isPinned(vertex),
       values,
     };

@@ -13,7 +13,8 @@ export interface RecordingHead {
   toml: string; // the complete scene
   steps: StepRow[];
   // contacts: numbers of contact points; obstacles: of each frame, if any move
-  frames: { step: number[]; time: number[]; contacts: number[]; obstacles?: Obstacle[][] };
+  // arrows: their numbers in a figure of arrays (bindings/python/aspic/figures.py), which has no simulation
+  frames: { step: number[]; time: number[]; contacts: number[]; obstacles?: Obstacle[][]; arrows?: number[] };
   lower: Vec3; // bounding box of all positions of all frames
   size: Vec3;
 }
@@ -49,6 +50,11 @@ export class Recording extends Pack<RecordingHead> {
     this.surfaces = this.head.scenes.map((scene) => this.surface(scene));
   }
 
+  // Whether this is a figure of arrays.
+  get isFigure(): boolean {
+    return this.head.frames.arrows !== undefined;
+  }
+
   get frameCount(): number {
     return this.head.frames.step.length;
   }
@@ -82,10 +88,15 @@ export class Recording extends Pack<RecordingHead> {
 
   // Contact points as in Picture, with the recorded point that each one belongs to; 0xffffffff: none.
   contacts(frame: number): { at: Float32Array; point: Uint32Array } {
-    const counts = this.head.frames.contacts;
-    const first = counts.slice(0, frame).reduce((sum, count) => sum + count, 0);
-    const end = first + counts[frame];
+    const [first, end] = rangeOf(this.head.frames.contacts, frame);
     return { at: this.floats("contact.at").slice(4 * first, 4 * end), point: this.indices("contact.point").subarray(first, end) };
+  }
+
+  // Arrows as in Picture.
+  arrows(frame: number): Float32Array | undefined {
+    if (!this.head.frames.arrows) return undefined;
+    const [first, end] = rangeOf(this.head.frames.arrows, frame);
+    return this.floats("arrows").subarray(6 * first, 6 * end);
   }
 
   // Values of a field at the vertices of a surface; NaN where there is none.
@@ -138,6 +149,12 @@ export class Recording extends Pack<RecordingHead> {
       place: this.arrays.has(`${part}.place`) ? this.indices(`${part}.place`) : new Uint32Array(0),
     };
   }
+}
+
+// First and last + 1 of the items of a frame.
+function rangeOf(counts: number[], frame: number): [number, number] {
+  const first = counts.slice(0, frame).reduce((sum, count) => sum + count, 0);
+  return [first, first + counts[frame]];
 }
 
 // Codes of the positions. Each frame is stored as the difference to the linear extrapolation of the two previous

@@ -44,9 +44,10 @@ const kScene = {
 
 const kFloor: Obstacle = { name: "floor", plane: { origin: [0, 0, 0], normal: [0, 1, 0] }, points: [], triangles: [] };
 
-function recordingText(hasContact = false): string {
+function recordingText(hasContact = false, isFigure = false): string {
   const pressure = { ...kField, name: "contact_pressure", label: "contact pressure", unit: "Pa" };
-  const scene = hasContact ? { ...kScene, fields: [...kScene.fields, pressure] } : kScene;
+  const fields = hasContact ? [...kScene.fields, pressure] : kScene.fields;
+  const scene = { ...kScene, fields, field: isFigure ? "young" : "" };
   const arrays: [string, "u8" | "u32" | "f32", Uint8Array | Uint32Array | Float32Array][] = [
     ["point.rest", "f32", Float32Array.of(0.00003, 0, 0, 0, 0, 0, 0, 0, 0)], // rounds to the first code
     ["point.mass", "f32", Float32Array.of(1, 2, 3)],
@@ -65,6 +66,7 @@ function recordingText(hasContact = false): string {
     ["field.signed.range", "f32", Float32Array.from(Array.from({ length: kFrames }, () => [-4 * 0.3, 250 * 0.3]).flat())],
     ["contact.at", "f32", Float32Array.of(1, 2, 3, 50, 4, 5, 6, 60, 7, 8, 9, 70)],
     ["contact.point", "u32", Uint32Array.of(1, 0xffffffff, 2)],
+    ["arrows", "f32", Float32Array.of(0, 0, 0, 1, 2, 3, 1, 1, 1, 4, 5, 6)],
   ];
   let at = 0;
   const blocks: Uint8Array[] = [];
@@ -85,7 +87,7 @@ function recordingText(hasContact = false): string {
     obstacles: hasContact ? [kFloor] : [],
     toml: "name = 1\n",
     steps: all,
-    frames: { step: [0, 10, 20, 30, 40], time: [0, 0.1, 0.2, 0.3, 0.4], contacts: [0, 2, 1, 0, 0] },
+    frames: { step: [0, 10, 20, 30, 40], time: [0, 0.1, 0.2, 0.3, 0.4], contacts: [0, 2, 1, 0, 0], ...(isFigure ? { arrows: [1, 0, 1, 0, 0] } : {}) },
     lower: [0, 0, 0],
     size: [kSize, kSize, kSize],
     arrays: list,
@@ -142,8 +144,8 @@ class Reader {
   }
 }
 
-async function opened(hasContact = false): Promise<Reader> {
-  const reader = new Reader(recordingText(hasContact));
+async function opened(hasContact = false, isFigure = false): Promise<Reader> {
+  const reader = new Reader(recordingText(hasContact, isFigure));
   await reader.start();
   reader.source.ready();
   return reader;
@@ -166,6 +168,17 @@ test("positions equal the packed ones", async () => {
     const x = [0, 3, 6].map((i) => (100 * frame * frame + i) * 1e-4);
     reader.picture.positions.forEach((value, i) => assert.ok(Math.abs(value - (i % 3 === 0 ? x[i / 3] : 0)) < 1e-6));
   }
+});
+
+test("a figure of arrays opens with its first field, and has arrows but no scene", async () => {
+  const reader = await opened(false, true);
+  assert.deepEqual([...reader.picture.values!], [5, 6, 6]);
+  assert.deepEqual([...reader.picture.arrows!], [0, 0, 0, 1, 2, 3]);
+  await reader.source.request({ do: "rewind", step: 20 });
+  reader.source.ready();
+  assert.deepEqual([...reader.picture.arrows!], [1, 1, 1, 4, 5, 6]);
+  assert.equal((await reader.source.ask<VertexReply>({ ask: "vertex", side: "a", vertex: 0 })).mass, undefined);
+  await assert.rejects(reader.source.ask({ ask: "scene", side: "a" }), /no scene/);
 });
 
 test("plays at its speed, ends, and restarts", async () => {

@@ -40,6 +40,7 @@ from ._aspic import (  # noqa: E402
 )
 from . import plot  # noqa: E402
 from .energies import Energy, TetEnergy, check_derivatives  # noqa: E402
+from .figures import Figure, show  # noqa: E402
 from .fits import Equilibrium, Trajectory, capture, fit, lame, verify  # noqa: E402
 from .live import View, view  # noqa: E402
 from .meshes import Mesh, Surface, box, cylinder, read_mesh, rod, sheet, sphere, torus  # noqa: E402
@@ -49,10 +50,10 @@ from .scenes import Body, Material, Scene  # noqa: E402
 from .simulations import NotConverged, Reports, Simulation, Trace, compare  # noqa: E402
 
 __all__ = [
-    "Body", "Energy", "Equilibrium", "Hessian", "InvalidInput", "Iteration", "LinearSolver", "Material", "Mesh",
+    "Body", "Energy", "Equilibrium", "Figure", "Hessian", "InvalidInput", "Iteration", "LinearSolver", "Material", "Mesh",
     "NotConverged", "Objective", "Reports", "Run", "Scene", "Simulation", "Snapshot", "StepReport", "Surface",
     "TetEnergy", "Trace", "Trajectory", "View", "__version__", "backtrack", "box", "capture", "check_derivatives",
     "compare", "cylinder", "fit", "integrator_names", "lame", "linear_solver_names", "materials", "minimize",
-    "minimizer_names", "plot", "read_mesh", "rod", "set_thread_count", "sheet", "sphere", "test_function",
+    "minimizer_names", "plot", "read_mesh", "rod", "set_thread_count", "sheet", "show", "sphere", "test_function",
     "test_functions", "thread_count", "torus", "verify", "view",
 ]

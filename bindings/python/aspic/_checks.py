@@ -2,8 +2,12 @@
 import os
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import _aspic
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
 
 
 class Strict:

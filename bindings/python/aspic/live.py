@@ -36,7 +36,7 @@ def _notebook_site():
 class View:
     """A running `aspic view`. `address` opens in a browser of this machine. stop() ends it, as does the program."""
 
-    def __init__(self, path, browser, embed, folder):
+    def __init__(self, path, browser, embed, folder) -> None:
         program = _program()
         if program is None:
             raise RuntimeError("the program `aspic` was not found; put it on the PATH (cmake --install)")
@@ -61,26 +61,26 @@ class View:
         link = f'<a href="{self.address}" target="_blank">Open the live viewer</a>'
         if not self._embed:
             return link
-        return f'<iframe src="{self.address}" style="width: 100%; height: 600px; border: 0"></iframe><br>{link}'
+        return f'<iframe src="{self.address}&settings" style="width: 100%; height: 600px; border: 0"></iframe><br>{link}'
 
     def __repr__(self):
         return f"<View {self.address}>"
 
-    def stop(self):
+    def stop(self) -> None:
         """Ends the viewer."""
         self._process.terminate()
         self._process.wait()
         self._process.stdout.close()
         _running.discard(self)
 
-    def wait(self):
+    def wait(self) -> None:
         """Returns when the viewer has ended. Ctrl-C ends it."""
         try:
             self._process.wait()
         finally:
             self.stop()
 
-    def __enter__(self):
+    def __enter__(self) -> "View":
         return self
 
     def __exit__(self, *_):
@@ -93,7 +93,7 @@ def _stop_all():
         view.stop()
 
 
-def view(scene, browser=True, embed=None):
+def view(scene, browser=True, embed=None) -> View:
     """Shows a Scene, a Simulation's scene or a file live, from its start: in a notebook, else in the browser.
 
     The viewer ends with the program: view(scene).wait() keeps a script alive. browser: open one, outside notebooks; the

@@ -2,7 +2,7 @@
 import html
 
 
-def in_notebook():
+def in_notebook() -> bool:
     """Whether this is the kernel of a notebook."""
     try:
         from IPython import get_ipython
@@ -15,7 +15,7 @@ def in_notebook():
 class Player:
     """A page in a frame of its own. It needs neither a server nor a kernel."""
 
-    def __init__(self, page, height=600):
+    def __init__(self, page, height=600) -> None:
         self.page, self.height = page, height
 
     def _repr_html_(self):
@@ -25,7 +25,7 @@ class Player:
     def __repr__(self):
         return f"<Player: {len(self.page) / 1e6:.1f} MB; save(path) writes it as a file>"
 
-    def save(self, path):
+    def save(self, path) -> None:
         """Writes the page; any browser opens it."""
         with open(path, "w", encoding="utf-8") as file:
             file.write(self.page)

@@ -1,4 +1,8 @@
 """Pictures with matplotlib. Every function draws into `ax`, or into new axes, and returns them."""
+from __future__ import annotations
+
+from typing import Any
+
 import numpy as np
 
 
@@ -9,7 +13,7 @@ def _axes(ax, **how):
     return plt.figure(figsize=how.pop("figsize", (6, 3.5))).add_subplot(**how)
 
 
-def energies(run, ax=None):
+def energies(run, ax=None) -> Any:
     """Kinetic, potential and total energy over time. run: Reports, a Run, or a Simulation that is recorded."""
     run = run.results() if hasattr(run, "results") else run
     ax, rows = _axes(ax), run if isinstance(run, list) else run.steps
@@ -21,7 +25,7 @@ def energies(run, ax=None):
     return ax
 
 
-def convergence(traces, ax=None):
+def convergence(traces, ax=None) -> Any:
     """|g| over iterations. traces: a Trace, a result of compare(), or a dict of either by label, such as compare()."""
     ax = _axes(ax)
     has_labels = isinstance(traces, dict) and not {"trace", "gradient_norm"} & set(traces)
@@ -34,7 +38,7 @@ def convergence(traces, ax=None):
     return ax
 
 
-def line_search(curve, trials=None, ax=None):
+def line_search(curve, trials=None, ax=None) -> Any:
     """E along a search direction with its quadratic model and the bound of the decrease test.
 
     curve: it.curve(), or an Iteration `it` inside its observer, with its trials.
@@ -58,7 +62,7 @@ def line_search(curve, trials=None, ax=None):
     return ax
 
 
-def landscape(plane, ax=None, levels=30):
+def landscape(plane, ax=None, levels=30) -> Any:
     """Contours of E on the plane of the search direction. plane: it.slice(), or an Iteration inside its observer."""
     plane = plane.slice() if hasattr(plane, "slice") else plane
     ax, value = _axes(ax, figsize=(5, 4)), np.ma.masked_invalid(plane["value"])
@@ -69,7 +73,7 @@ def landscape(plane, ax=None, levels=30):
     return ax
 
 
-def contours(f, lower, upper, path=None, ax=None, levels=30, samples=101):
+def contours(f, lower, upper, path=None, ax=None, levels=30, samples=101) -> Any:
     """Contours of a function of two variables, and the points that a minimizer visited, (k, 2)."""
     ax = _axes(ax, figsize=(5, 4))
     X, Y = np.meshgrid(np.linspace(lower[0], upper[0], samples), np.linspace(lower[1], upper[1], samples))
@@ -81,7 +85,7 @@ def contours(f, lower, upper, path=None, ax=None, levels=30, samples=101):
     return ax
 
 
-def body(shape, tets=None, values=None, ax=None, label=""):
+def body(shape, tets=None, values=None, ax=None, label="") -> Any:
     """The boundary of a body. shape: a Simulation, a Mesh, a Body of a scene, or positions (n, 3) with `tets`.
 
     values: one per tet or vertex, as colors; of a Simulation also the name of a field, such as "von_mises".

@@ -3,15 +3,18 @@
 Every call checks what it adds, and a call that raises changes nothing. Bodies of more than 20 000 tets are checked for
 defects of the mesh alone; what their selections and formulas yield is checked when a simulation is made.
 """
+from __future__ import annotations
+
 import os
 import pathlib
 import tempfile
 import types
+from typing import Any
 
 import numpy as np
 
 from . import _aspic
-from ._checks import Strict, bounded, frozen, is_path
+from ._checks import Floats, Ints, Strict, bounded, frozen, is_path
 from .meshes import Mesh, Polyline, Surface, Thin
 
 _MOST_TETS = 20_000  # of a body whose model is built for checks
@@ -31,11 +34,15 @@ def _is_list(value):
 
 
 class Material(Strict):
-    """A material by its name, see materials(). Values are numbers, formulas of X, Y, Z, or arrays with one per tet."""
+    """A material by its name, see materials(). Values are numbers, formulas of X, Y, Z, or arrays with one per tet.
+
+    >>> aspic.Material("neo_hookean", young="1e5 * (1 + X)", poisson=0.4)
+    Material('neo_hookean', young='1e5 * (1 + X)', poisson=0.4)
+    """
 
     _advice = "a material is constant: make another one, and give it to body.set(material=...)"
 
-    def __init__(self, model="neo_hookean", **values):
+    def __init__(self, model="neo_hookean", **values) -> None:
         values = {key: _numbers(key, value) if _is_list(value) else value for key, value in values.items()}
         self._model, self._values = model, types.MappingProxyType(values)
         for extreme in (np.min, np.max):
@@ -45,12 +52,12 @@ class Material(Strict):
             _check_keys({"body": [body]}, "Material", "body.body.material.")
 
     @property
-    def model(self):
+    def model(self) -> str:
         """The name of the constitutive model."""
         return self._model
 
     @property
-    def values(self):
+    def values(self) -> types.MappingProxyType[str, Any]:
         """The parameters by name."""
         return self._values
 
@@ -113,30 +120,31 @@ class Body(Strict):
     _attributes = ("table",)
     _advice = "use body.set({name}=...)"
 
-    def __init__(self, scene, mesh, table):
+    def __init__(self, scene, mesh, table) -> None:
         self._scene, self._mesh, self.table = scene, mesh, table
 
     def __repr__(self):
         return f"<Body {self.name}>"
 
     @property
-    def name(self):
+    def name(self) -> str:
+        """Unique in the scene."""
         return self.table["name"]
 
     @property
-    def mesh(self):
+    def mesh(self) -> Mesh | Surface:
         """The Mesh, which cannot be changed."""
         if self._mesh is None:
             raise _aspic.InvalidInput(f"body '{self.name}' has no Mesh: it is read when the simulation is made")
         return self._mesh
 
     @property
-    def vertices(self):
+    def vertices(self) -> Floats:
         """Rest positions, (n, 3) [m]."""
         return self.mesh.vertices
 
     @property
-    def tets(self):
+    def tets(self) -> Ints:
         """Vertices of each tet, (m, 4)."""
         return self.mesh.tets
 
@@ -162,27 +170,27 @@ class Body(Strict):
     def _add(self, kind, where, values):
         return self._change({**self.table, kind: [*_listed(self.table.get(kind)), {"where": self._where(where), **values}]})
 
-    def pin(self, where, **values):
+    def pin(self, where, **values) -> Body:
         """Prescribes positions: keys name, motion, axes, direction."""
         return self._add("pin", where, values)
 
-    def spring(self, where=None, **values):
+    def spring(self, where=None, **values) -> Body:
         """Springs to points, between vertices or along edges: keys stiffness [N/m], target, between, edges, ..."""
         return self._add("spring", where, values)
 
-    def traction(self, where, **values):
+    def traction(self, where, **values) -> Body:
         """A dead load on the surface: keys value or dead_pressure [Pa]."""
         return self._add("traction", where, values)
 
-    def pressure(self, where, value):
+    def pressure(self, where, value) -> Body:
         """A follower pressure [Pa]."""
         return self._add("pressure", where, {"value": value})
 
-    def force(self, value, where="all"):
+    def force(self, value, where="all") -> Body:
         """A dead load per volume [N/m^3]."""
         return self._add("force", where, {"value": value})
 
-    def set(self, **values):
+    def set(self, **values) -> Body:
         """Sets any other key of a body: velocity, deform, damping, friction, ... `material` replaces the whole material."""
         for key in ("mesh", "shape"):
             if key in values:
@@ -193,12 +201,18 @@ class Body(Strict):
 
 
 class Scene(Strict):
-    """Bodies, obstacles and settings. Keywords are top-level keys and sections: time={...}, solver={...}, contact={...}."""
+    """Bodies, obstacles and settings. Keywords are top-level keys and sections: time={...}, solver={...}, contact={...}.
+
+    >>> scene = aspic.Scene(gravity=(0, -9.81, 0), contact={"friction": 0.3})
+    >>> ball = scene.add(aspic.sphere(radius=0.1, size=0.05), name="ball", translate=[0, 0.2, 0])
+    >>> scene.obstacle(name="floor", plane={})
+    <Scene scene: ball>
+    """
 
     _attributes = ("name", "bodies", "document", "energies")
     _advice = 'use scene.set("{name}", value)'
 
-    def __init__(self, gravity=(0.0, -9.81, 0.0), name="scene", **sections):
+    def __init__(self, gravity=(0.0, -9.81, 0.0), name="scene", **sections) -> None:
         self.name, self.bodies, self.energies = name, [], []
         self.document = {}
         self._path, self._overrides = None, {}
@@ -210,7 +224,7 @@ class Scene(Strict):
         self._change({"gravity": gravity, **sections})
 
     @classmethod
-    def load(cls, path, overrides=None):
+    def load(cls, path, overrides=None) -> Scene:
         """Reads a .toml file, or makes a scene of a mesh. overrides: {"material.young": 2e5, "time.step": 0.005}."""
         scene = cls(name=pathlib.Path(path).stem)
         scene._path = os.fspath(path)
@@ -254,7 +268,7 @@ class Scene(Strict):
         if (body and body._mesh) or "shell" in table or "rod" in table or not _is_surface(table.get("mesh")):
             source.check_model(_MOST_TETS)
 
-    def add(self, mesh, name=None, material=None, **values):
+    def add(self, mesh, name=None, material=None, **values) -> Body:
         """Adds a body. mesh: a Mesh, the path of a mesh file, or a dict such as {"sphere": {"radius": 1, "size": 0.2}}.
 
         sheet() and rod() make thin bodies: scene.add(aspic.sheet("garment.obj", thickness=1e-3)). The body has a copy
@@ -302,7 +316,7 @@ class Scene(Strict):
         np.savetxt(path, values, fmt="%.17g")
         return path
 
-    def obstacle(self, mesh=None, **values):
+    def obstacle(self, mesh=None, **values) -> Scene:
         """Adds an obstacle, which switches contact on: plane={}, sphere={...}, capsule={...}, a Mesh or a Surface."""
         self._require_code("obstacle()")
         if isinstance(mesh, (Mesh, Surface)):
@@ -315,18 +329,18 @@ class Scene(Strict):
             values["mesh"] = mesh
         return self._change({**self.document, "obstacle": [*self.document.get("obstacle", []), values]})
 
-    def contact(self, **values):
+    def contact(self, **values) -> Scene:
         """Switches contact on: keys friction, reach [m], stiffness [Pa], pair, start, ..."""
         self._require_code("contact()")
         return self._change({**self.document, "contact": {**self.document.get("contact", {}), **values}})
 
-    def energy(self, energy):
+    def energy(self, energy) -> Any:
         """Adds a term of the potential, see Energy. Returns it."""
         _aspic.check_energy(energy)
         self.energies.append(energy)
         return energy
 
-    def set(self, key, value):
+    def set(self, key, value) -> Scene:
         """Overrides a key by its path, as --set does: scene.set("solver.method", "lbfgs"), "body.jelly.friction"."""
         if self._path is not None:
             return self._override({**self._overrides, key: value})
@@ -339,11 +353,11 @@ class Scene(Strict):
         body.set(**{keys[1]: _with(body.table, keys[1:], value)[keys[1]]})
         return self
 
-    def first_vertex(self, body):
+    def first_vertex(self, body) -> int:
         """Number of the body's first vertex in arrays of the whole scene, for elements of an Energy."""
         return sum(len(b.vertices) for b in self.bodies[:self.bodies.index(body)])
 
-    def save(self, folder):
+    def save(self, folder) -> pathlib.Path:
         """Writes scene.toml and its inputs into a folder, for the command line. Returns the path of the file.
 
         Raises InvalidInput if the scene has energies in Python, which a file cannot hold.
@@ -375,7 +389,7 @@ class Scene(Strict):
         return _aspic.SceneSource(document, self.name, self.energies)
 
 
-def scene_of(scene):
+def scene_of(scene) -> Scene:
     """A Scene, also from the path of a scene or a mesh."""
     if isinstance(scene, Scene):
         return scene

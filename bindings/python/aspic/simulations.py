@@ -1,20 +1,25 @@
 """Simulations, their reports and the trace of their minimizations."""
+from __future__ import annotations
+
 import os
 import tempfile
+from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import _aspic
-from ._checks import SceneState, Strict, read_only
-from .notebook import in_notebook
+from ._checks import Floats, Ints, SceneState, Strict, read_only
+from .notebook import Player, in_notebook
 from .results import Run
-from .scenes import scene_of
+from .scenes import Scene, scene_of
 
 
 class NotConverged(RuntimeError):
     """A step did not converge; `report` is that of the step."""
 
-    def __init__(self, report):
+    def __init__(self, report) -> None:
         super().__init__(f"step {report.step}: {report.status}; {report.explanation}")
         self.report = report
 
@@ -25,14 +30,14 @@ class NotConverged(RuntimeError):
 class Reports(list):
     """The reports of several steps. reports["iterations"] is a column as an array."""
 
-    def __getitem__(self, key):
+    def __getitem__(self, key) -> Any:
         if isinstance(key, str):
             return np.array([report.to_dict()[key] if not hasattr(report, key) else getattr(report, key)
                              for report in self])
         found = super().__getitem__(key)
         return Reports(found) if isinstance(key, slice) else found
 
-    def __add__(self, other):
+    def __add__(self, other) -> Reports:
         return Reports(super().__add__(other))
 
 
@@ -45,11 +50,18 @@ class Simulation(Strict):
 
     Changes of the scene afterwards raise in step(): restore(snapshot) continues in a simulation of the changed scene.
     Arrays of properties are read-only copies; assign q or v as a whole.
+
+    >>> scene = aspic.Scene()
+    >>> body = scene.add(aspic.box(0.1, cells=2))
+    >>> sim = aspic.Simulation(scene, h=0.01)
+    >>> reports = sim.run(10, check=True)
+    >>> round(sim.time, 6), round(float(sim.v[:, 1].mean()), 6)
+    (0.1, -0.981)
     """
 
     _advice = "the attributes q and v can be set; other settings belong to the scene or the constructor"
 
-    def __init__(self, scene, h=None, solver=None, integrator=None, out=None, overwrite=False, record=True):
+    def __init__(self, scene, h=None, solver=None, integrator=None, out=None, overwrite=False, record=True) -> None:
         self._scene = scene_of(scene)
         settings = {"time.step": h, "time.integrator": integrator,
                     **{f"solver.{key}": value for key, value in _solver_keys(solver or {}).items()}}
@@ -76,104 +88,104 @@ class Simulation(Strict):
         return f"<Simulation {self.name}: {len(self._core.rest)} vertices, step {self.steps_taken}>"
 
     @property
-    def scene(self):
+    def scene(self) -> Scene:
         """The scene that this was made of."""
         return self._scene
 
     # --- state ---------------------------------------------------------------------------------------------------------
     @property
-    def q(self):
+    def q(self) -> Floats:
         """Positions, (n, 3) [m]. Assigning changes the state and ends the recording; fixed pins hold the new positions."""
         return read_only(self._core.q)
 
     @q.setter
-    def q(self, q):
+    def q(self, q) -> None:
         self._core.set_q(q)
 
     @property
-    def v(self):
+    def v(self) -> Floats:
         """Velocities, (n, 3) [m/s]. Assigning changes the state and ends the recording; those of pins are 0 or as before."""
         return read_only(self._core.v)
 
     @v.setter
-    def v(self, v):
+    def v(self, v) -> None:
         self._core.set_v(v)
 
     @property
-    def time(self):
+    def time(self) -> float:
         """At the end of the last step [s]."""
         return self._core.time
 
     @property
-    def h(self):
+    def h(self) -> float:
         """Time step [s]."""
         return self._core.h
 
     @property
-    def steps_taken(self):
+    def steps_taken(self) -> int:
         """Since time 0."""
         return self._core.steps_taken
 
     @property
-    def name(self):
+    def name(self) -> str:
         """Name of the scene."""
         return self._core.name
 
     @property
-    def notes(self):
+    def notes(self) -> list[str]:
         """Chosen defaults and warnings, as sentences."""
         return self._core.notes
 
     @property
-    def solver(self):
+    def solver(self) -> str:
         """The methods and the reasons for their choice."""
         return self._core.solver
 
     @property
-    def state_hash(self):
+    def state_hash(self) -> str:
         """As in steps.csv: 16 digits, for any number of threads."""
         return self._core.state_hash
 
     @property
-    def rest(self):
+    def rest(self) -> Floats:
         """Rest positions, (n, 3) [m]."""
         return read_only(self._core.rest)
 
     @property
-    def tets(self):
+    def tets(self) -> Ints:
         """Vertices of each tet, (m, 4)."""
         return read_only(self._core.tets)
 
     @property
-    def triangles(self):
+    def triangles(self) -> Ints:
         """Vertices of each triangle of the sheets, (k, 3)."""
         return read_only(self._core.triangles)
 
     @property
-    def mass(self):
+    def mass(self) -> Floats:
         """Mass of each vertex, (n,) [kg]."""
         return read_only(self._core.mass)
 
     @property
-    def pinned(self):
+    def pinned(self) -> NDArray[np.bool_]:
         """Whether a pin holds each vertex, (n,)."""
         return read_only(self._core.pinned)
 
     @property
-    def bodies(self):
+    def bodies(self) -> dict[str, dict[str, slice]]:
         """{name: {"vertices": slice, "tets": slice, "triangles": slice}}: sim.q[sim.bodies["jelly"]["vertices"]]."""
         keys = ("vertices", "tets", "triangles")
         return {b["name"]: {key: b[key] for key in keys} for b in self._core.bodies}
 
-    def fields(self):
+    def fields(self) -> dict[str, Floats]:
         """Quantities of each tet: energy_density [J/m^3], det_F, cauchy (m, 6) and von_mises [Pa], young, poisson."""
         return self._core.fields()
 
-    def reactions(self):
+    def reactions(self) -> Floats:
         """Forces of the pins on the vertices in the last step, (n, 3) [N]; NaN before the first."""
         return self._core.reactions()
 
-    def mesh_error(self):
+    def mesh_error(self) -> dict[str, Any]:
         """Estimates by how much linear tets are too stiff at the current state, see docs/verification.md.
 
         Returns a dict: "text"; "reliable"; and if there is an estimate, {body: value} for
@@ -183,16 +195,16 @@ class Simulation(Strict):
         """
         return self._core.mesh_error()
 
-    def snapshot(self):
+    def snapshot(self) -> _aspic.Snapshot:
         """The state with everything that later steps depend on. It can be pickled."""
         return self._core.snapshot()
 
-    def restore(self, snapshot):
+    def restore(self, snapshot) -> None:
         """Returns to a snapshot; later steps have the same bits. Ends the recording."""
         self._core.restore(snapshot)
 
     # --- steps ---------------------------------------------------------------------------------------------------------
-    def step(self, observe=None, direction=None, line_search=None):
+    def step(self, observe=None, direction=None, line_search=None) -> _aspic.StepReport:
         """Takes one step and returns its StepReport.
 
         observe(iteration) is called in every iteration; if it returns False, the step is dropped. The state stays
@@ -206,7 +218,7 @@ class Simulation(Strict):
             self._core.record(os.path.join(self._temporary.name, "run"), True, True)
         return self._core.step(observe, direction, line_search)
 
-    def steps(self, count=None, observe=None, check=False, **method):
+    def steps(self, count=None, observe=None, check=False, **method) -> Iterator[_aspic.StepReport]:
         """Takes steps one by one and yields their reports. count: by default to the end of the scene's duration.
 
         check: raise NotConverged at the first step that does not converge. method: direction and line_search of step().
@@ -220,7 +232,7 @@ class Simulation(Strict):
                 raise NotConverged(report)
             yield report
 
-    def run(self, count=None, observe=None, check=False, progress=False, **method):
+    def run(self, count=None, observe=None, check=False, progress=False, **method) -> Reports:
         """Takes steps, see steps(), and returns their Reports; progress: show a line about them."""
         reports = Reports()
         last = self._core.steps_of_run if count is None else self.steps_taken + count
@@ -233,20 +245,20 @@ class Simulation(Strict):
             self._core.flush()
         return reports
 
-    def objective(self):
+    def objective(self) -> _aspic.StepObjective:
         """E(q) of the next steps as a function of its own: E(q), E.gradient(q), E.hessian(q), E.begin_step(q, v, h)."""
         self._scene_state.require_unchanged()
         return self._core.objective()
 
     # --- results -------------------------------------------------------------------------------------------------------
-    def results(self):
+    def results(self) -> Run:
         """The recorded Run so far."""
         if not self._core.is_recording:
             raise RuntimeError("nothing is recorded: take a step first, and neither assign the state nor use record=False")
         self._core.flush()
         return Run(self._folder if self._folder is not None else os.path.join(self._temporary.name, "run"))
 
-    def show(self, height=600):
+    def show(self, height=600) -> Player:
         """The recorded motion as a page for notebooks, see Run.show()."""
         return self.results().show(height)
 
@@ -290,13 +302,20 @@ class Trace:
 
     Columns as in trace/iterations.csv; `trials`: an array per iteration with the columns alpha, value, bound, accepted and
     by_slope. landscape: also sample E along each direction (curves) and on a plane (slices).
+
+    >>> scene = aspic.Scene()
+    >>> body = scene.add(aspic.box(0.1, cells=2)).pin([0])
+    >>> trace = aspic.Trace()
+    >>> report = aspic.Simulation(scene, h=0.01).step(observe=trace)
+    >>> len(trace["gradient_norm"]) == report.iterations
+    True
     """
 
-    def __init__(self, landscape=False, samples=41):
+    def __init__(self, landscape=False, samples=41) -> None:
         self.iterations, self.trials, self.curves, self.slices = [], [], [], []
         self._landscape, self._samples = landscape, samples
 
-    def __call__(self, it):
+    def __call__(self, it) -> None:
         self.iterations.append({"index": it.index, "value": it.value, "gradient_norm": it.gradient_norm,
                                 "decrement": it.decrement, "alpha": it.alpha, "trials": len(it.trials),
                                 "fallbacks": it.fallbacks, "gradients": it.gradients, **it.work})
@@ -305,20 +324,25 @@ class Trace:
             self.curves.append(it.curve())
             self.slices.append(it.slice(self._samples))
 
-    def __getitem__(self, column):
+    def __getitem__(self, column) -> NDArray[Any]:
         return np.array([row[column] for row in self.iterations])
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self.iterations)
 
 
-def compare(scene, methods, step=1, max_seconds=60):
+def compare(scene, methods, step=1, max_seconds=60) -> dict[str, dict[str, Any]]:
     """Solves one step by several methods, each from the same state, as `aspic compare` does.
 
     methods: dicts of [solver] keys or names of methods. max_seconds: limit per method. Returns a dict per method: its
     report; trace, the columns index, value, gradient_norm, gradients, hessians and seconds over iterations; the
     fastest of up to three runs [s]; distance, the largest of a vertex from the minimizer [m]; excess, that of E
     relative to the start; same_minimizer; description.
+
+    >>> scene = aspic.Scene()
+    >>> body = scene.add(aspic.box(0.1, cells=2)).pin([0])
+    >>> sorted(aspic.compare(scene, ["newton", "lbfgs"]))
+    ['lbfgs', 'newton']
     """
     scene = scene_of(scene)
     tables = [_solver_keys(method) for method in ([methods] if isinstance(methods, (str, dict)) else methods)]

@@ -1,12 +1,15 @@
 """PEP 517 backend without requirements: CMake builds and installs the package, this makes a wheel of it.
 
-pip install . compiles for this processor; pip wheel . --no-deps --config-settings portable=1 for any x86-64-v3 one. The build folder
-build/wheel is kept, so that a second installation takes seconds. It needs the compiler and the libraries of CONTRIBUTING.md.
-The wheel also has the program `aspic`, which view() starts, and its scenes.
+pip install . compiles for this machine. pip wheel . --no-deps --config-settings portable=1, which tools/wheel calls, makes a wheel
+for any x86-64-v3 processor and any Linux whose glibc is not older than this one; it contains the libraries that a Linux may
+lack. The build folder build/wheel is kept, so that a second installation takes seconds. Both need the compiler and the
+libraries of CONTRIBUTING.md. The wheel also has the program `aspic`, which view() starts, and its scenes.
 """
 import base64
 import hashlib
 import pathlib
+import platform
+import re
 import shutil
 import subprocess
 import sys
@@ -18,8 +21,13 @@ import zipfile
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 NAME = f"{PROJECT['name']}-{PROJECT['version']}"
-TAG = f"cp{sys.version_info.major}{sys.version_info.minor}"
-TAG = f"{TAG}-{TAG}-{sysconfig.get_platform().replace('-', '_').replace('.', '_')}"
+PYTHON = f"cp{sys.version_info.major}{sys.version_info.minor}"
+PLATFORM = sysconfig.get_platform().replace("-", "_").replace(".", "_")
+# Libraries that the tag manylinux promises (PEP 600); others are copied into the wheel.
+EVERYWHERE = ("ld-linux-x86-64", "libc", "libdl", "libexpat", "libgcc_s", "libm", "libpthread", "libstdc++", "libz", "linux-vdso")
+# Places of the copies seen from the module and from the program: in an environment, Debian's /usr/local, and pip --target.
+LIBRARIES = (f"$ORIGIN/../aspic.libs:$ORIGIN/../lib/python{sysconfig.get_python_version()}/site-packages/aspic.libs:"
+             f"$ORIGIN/../lib/python{sysconfig.get_python_version()}/dist-packages/aspic.libs")
 
 
 def _run(*command):
@@ -33,14 +41,25 @@ def _build(portable, prefix):
     options = {"CMAKE_BUILD_TYPE": "Release", "ASPIC_PYTHON": "ON", "ASPIC_TESTS": "OFF", "ASPIC_BENCH": "OFF",
                "ASPIC_MESHER": "OFF", "ASPIC_VIEWER": viewer, "ASPIC_PORTABLE": "ON" if portable else "OFF",
                "Python_EXECUTABLE": sys.executable, "ASPIC_PYTHON_DIR": "aspic"}
+    if portable:  # an RPATH, which serves the libraries of libraries, too, instead of a RUNPATH
+        options |= {"CMAKE_BUILD_WITH_INSTALL_RPATH": "ON", "CMAKE_INSTALL_RPATH": LIBRARIES}
+        options |= {f"CMAKE_{kind}_LINKER_FLAGS": "-Wl,--disable-new-dtags" for kind in ("EXE", "MODULE")}
     _run("cmake", "-S", ".", "-B", build, "-G", "Ninja", *(f"-D{key}={value}" for key, value in options.items()))
     _run("cmake", "--build", build, "--target", "_aspic", "aspic_cli")
     _run("cmake", "--install", build, "--prefix", prefix, "--component", "python")
     return build / "bin/aspic"
 
 
+def _needs_numpy_1():
+    """Whether pybind11 is older than 2.12, which cannot read arrays of NumPy 2."""
+    header = pathlib.Path("/usr/include/pybind11/detail/common.h")
+    version = re.findall(r"PYBIND11_VERSION_M\w+ (\d+)", header.read_text()) if header.exists() else [2, 12]
+    return [int(part) for part in version] < [2, 12]
+
+
 def _metadata():
-    requires = "".join(f"Requires-Dist: {name}\n" for name in PROJECT["dependencies"])
+    limit = ["numpy<2"] if _needs_numpy_1() else []
+    requires = "".join(f"Requires-Dist: {name}\n" for name in PROJECT["dependencies"] + limit)
     return (f"Metadata-Version: 2.1\nName: {PROJECT['name']}\nVersion: {PROJECT['version']}\n"
             f"Summary: {PROJECT['description']}\nRequires-Python: {PROJECT['requires-python']}\n{requires}")
 
@@ -52,31 +71,53 @@ def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
     return info.name
 
 
-def _write_wheel(directory, files):
+def _libraries(*binaries):
+    """{name in the wheel: bytes} of the libraries that binaries need and a Linux may lack, with their licenses."""
+    files = {}
+    for binary in binaries:
+        listed = subprocess.run(["ldd", binary], check=True, capture_output=True, text=True).stdout
+        for name, path in re.findall(r"(\S+) => (/\S+)", listed):
+            if name.split(".so")[0] in EVERYWHERE:
+                continue
+            path = pathlib.Path(path).resolve()
+            files[f"aspic.libs/{name}"] = path.read_bytes()
+            package = subprocess.run(["dpkg", "-S", path], check=True, capture_output=True, text=True).stdout.split(":")[0]
+            files[f"{NAME}.dist-info/licenses/{package}"] = pathlib.Path(f"/usr/share/doc/{package}/copyright").read_bytes()
+    return files
+
+
+def _write_wheel(directory, files, system=PLATFORM):
+    tag = f"{PYTHON}-{PYTHON}-{system}"
     info = f"{NAME}.dist-info"
     files[f"{info}/METADATA"] = _metadata().encode()
-    files[f"{info}/WHEEL"] = f"Wheel-Version: 1.0\nGenerator: aspic\nRoot-Is-Purelib: false\nTag: {TAG}\n".encode()
+    files[f"{info}/WHEEL"] = f"Wheel-Version: 1.0\nGenerator: aspic\nRoot-Is-Purelib: false\nTag: {tag}\n".encode()
 
     def line(name, data):
         digest = base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
         return f"{name},sha256={digest},{len(data)}\n"
 
     files[f"{info}/RECORD"] = ("".join(line(*file) for file in files.items()) + f"{info}/RECORD,,\n").encode()
-    with zipfile.ZipFile(pathlib.Path(directory) / f"{NAME}-{TAG}.whl", "w") as wheel:
+    with zipfile.ZipFile(pathlib.Path(directory) / f"{NAME}-{tag}.whl", "w") as wheel:
         for name, data in files.items():
             entry = zipfile.ZipInfo(name)
             entry.compress_type = zipfile.ZIP_DEFLATED
             entry.external_attr = (0o100755 if "/scripts/" in name else 0o100644) << 16  # mode, of a regular file
             wheel.writestr(entry, data)
-    return f"{NAME}-{TAG}.whl"
+    return f"{NAME}-{tag}.whl"
 
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     with tempfile.TemporaryDirectory() as prefix:
-        program = _build((config_settings or {}).get("portable"), prefix)
+        portable = (config_settings or {}).get("portable")
+        program = _build(portable, prefix)
         data = f"{NAME}.data"
-        return _write_wheel(wheel_directory, {**_files(prefix, ""), f"{data}/scripts/aspic": program.read_bytes(),
-                                              **_files(ROOT / "scenes", f"{data}/data/share/aspic/scenes/")})
+        files = {**_files(prefix, ""), f"{data}/scripts/aspic": program.read_bytes(),
+                 **_files(ROOT / "scenes", f"{data}/data/share/aspic/scenes/")}
+        if not portable:
+            return _write_wheel(wheel_directory, files)
+        glibc = platform.libc_ver()[1].replace(".", "_")
+        libraries = _libraries(program, *pathlib.Path(prefix).rglob("*.so"))
+        return _write_wheel(wheel_directory, {**files, **libraries}, f"manylinux_{glibc}_{platform.machine()}")
 
 
 def _files(folder, to):

@@ -1,8 +1,10 @@
 """Stubs, names and documentation of the package."""
+import doctest
 import inspect
 import pathlib
 import re
 
+import numpy as np
 import pytest
 from conftest import ROOT
 
@@ -24,16 +26,27 @@ def test_stubs_list_the_names_of_the_module():
         assert listed == members, name
 
 
-def test_public_names_have_docstrings():
+def public_callables():
+    """Names and values of the functions of the package, and of the methods and properties of its classes."""
     for name in aspic.__all__:
         thing = getattr(aspic, name)
-        if name == "__version__":
+        if not getattr(thing, "__module__", "").startswith("aspic."):
             continue
-        assert inspect.getdoc(thing), name
-        if inspect.isclass(thing) and thing.__module__.startswith("aspic.") and not issubclass(thing, aspic.Energy):
+        if not inspect.isclass(thing):
+            yield name, thing
+        elif not issubclass(thing, aspic.Energy):
+            yield name, thing
             for member, value in vars(thing).items():
+                value = value.fget if isinstance(value, property) else getattr(value, "__func__", value)
                 if not member.startswith("_") and callable(value):
-                    assert inspect.getdoc(value), f"{name}.{member}"
+                    yield f"{name}.{member}", value
+
+
+def test_public_names_have_docstrings_and_types():
+    for name, value in public_callables():
+        assert inspect.getdoc(value), name
+        if inspect.isfunction(value):  # others are typed by the stub
+            assert "return" in value.__annotations__, name
 
 
 def test_old_processor_is_refused_in_words(tmp_path):
@@ -50,3 +63,19 @@ def test_documentation_names_what_exists():
         assert hasattr(aspic, name) or (folder / f"{name}.py").exists() or (folder / name / "__init__.py").exists(), name
     for link in re.findall(r"\]\((?!https?:)([^)#]+)", text):
         assert (ROOT / "docs" / link).exists() or "inverse/" in link and not (ROOT / "inverse").exists(), link
+
+
+def test_examples_of_docstrings_run(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    found = [test for name in aspic.__all__ for test in doctest.DocTestFinder().find(
+        getattr(aspic, name), f"aspic.{name}", globs={"aspic": aspic, "np": np})]
+    runner = doctest.DocTestRunner(optionflags=doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE)
+    messages = []
+    for test in found:
+        runner.run(test, out=messages.append)
+    assert runner.failures == 0, "".join(messages)
+    # Results of other functions, what the module provides, and what needs a data set, a display or minutes.
+    without = {"Body", "Figure", "Hessian", "InvalidInput", "Iteration", "LinearSolver", "NotConverged", "Objective", "Reports",
+               "Snapshot", "StepReport", "View", "__version__", "capture", "fit", "integrator_names", "linear_solver_names", "materials",
+               "minimizer_names", "plot", "set_thread_count", "test_functions", "thread_count", "verify", "view"}
+    assert {test.name.removeprefix("aspic.") for test in found if test.examples} >= set(aspic.__all__) - without

@@ -252,7 +252,7 @@ def test_live_viewer_in_a_notebook_is_framed_by_its_server_alone(jelly, program,
     monkeypatch.setattr(aspic.live, "in_notebook", lambda: True)
     (tmp_path / "nbserver-17.json").write_text('{"url": "http://localhost:8888/prefix/"}')
     with aspic.view(jelly) as view:
-        assert f'<iframe src="{view.address}"' in view._repr_html_()
+        assert f'<iframe src="{view.address}&settings"' in view._repr_html_()
         with urllib.request.urlopen(view.address, timeout=20) as page:
             assert "frame-ancestors http://localhost:8888;" in page.headers["Content-Security-Policy"]
     (tmp_path / "nbserver-17.json").unlink()

@@ -1,10 +1,13 @@
 """The wheel that pip makes of the package."""
 import pathlib
+import re
 import subprocess
 import sys
 import zipfile
 
 import pytest
+
+from aspic import _aspic
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "bindings/python/build_backend"))
@@ -25,3 +28,11 @@ def test_installed_wheel_has_a_module_and_a_program_that_runs(tmp_path):
     assert subprocess.run([program], capture_output=True, text=True).stdout == "2\n"
     (module,) = (tmp_path / "to").rglob("one/__init__.py")
     assert module.read_text() == "two = 2\n"
+
+
+def test_portable_wheel_holds_the_libraries_that_a_linux_may_lack():
+    files = aspic_build._libraries(sys.executable, _aspic.__file__)
+    assert "aspic.libs/libmuparser.so.2" in files
+    assert not [name for name in files if re.search(r"/(libc|libm|libstdc\+\+|libz|ld-linux)[.-]", name)]
+    assert {name.split("/")[1] for name in files if "licenses" in name}
+    assert ("numpy<2" in aspic_build._metadata()) == aspic_build._needs_numpy_1()

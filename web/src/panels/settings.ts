@@ -15,7 +15,7 @@ import { addRow, NumberRow, type Row } from "./rows";
 
 type Target = SideName | "both";
 
-const kClosed = ["World", "Solver", "Line search"]; // closed at first
+const kClosed = ["Solver", "Line search"]; // closed at first
 const kConstants = ["young", "poisson", "density"] as const; // of a material
 const kOneChange = 1000; // [ms]: changes that follow each other faster are one change
 

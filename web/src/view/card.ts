@@ -118,6 +118,7 @@ class Section {
 
 function vertexRows(reply: VertexReply): Row[] {
   const first = reply.first_entry;
+  if (reply.mass === undefined) return [["position", vectorText(reply.position, "m")]];
   return [
     ...(reply.vertex < 0 ? [] : [["entries", `q[${first}], q[${first + 1}], q[${first + 2}]`] as Row]),
     ["position", vectorText(reply.position, "m")],

@@ -78,6 +78,7 @@ export class Figure {
     const { contacts } = side.picture;
     this.pressures.feed(this.name, 0, largestPressure(contacts));
     this.stage?.contacts.show(contacts, this.largestPressure());
+    this.stage?.arrows.show(side.picture.arrows);
     this.stage?.moved();
   }
 

@@ -2,6 +2,7 @@
 // scene's box, so that bodies of micrometers and of kilometers suit the GPU's single precision.
 import * as THREE from "three";
 import type { Obstacle, Scene, Vec3 } from "../protocol";
+import { Arrows } from "./arrows";
 import type { Body, Box } from "./body";
 import { sceneAxes } from "./cameras";
 import { ContactDots } from "./contacts";
@@ -39,6 +40,7 @@ export class Stage {
   private readonly lamp = new THREE.DirectionalLight("#ffffff", 0.55); // light at the camera
   readonly obstacles = new ObstacleBodies();
   readonly contacts = new ContactDots();
+  readonly arrows = new Arrows();
   private shift = [0, 0]; // shift of the picture, less than a pixel; the mean of shifted pictures has smooth edges
   private tool: ToolShape | null = null;
   private readonly lit = new THREE.Sphere(new THREE.Vector3(), 0); // region that the shadow map covers
@@ -54,7 +56,7 @@ export class Stage {
     }
     this.dome.visible = false;
     this.extras.matrixAutoUpdate = false;
-    this.extras.add(this.contacts);
+    this.extras.add(this.contacts, this.arrows);
     this.scene.add(this.extras, this.sky, this.sun, this.sun.target, this.dome, this.dome.target, this.lamp, this.lamp.target, this.obstacles);
   }
 
