@@ -85,7 +85,7 @@ CostPrediction predict_cholesky(const BlockPattern& pattern) {
     const int levels = search(pattern, queue, begin, mark, 2);
     const double n = static_cast<double>(queue.size() - begin), s = n / levels;
     cost.flops += std::min(150 * n * n, 390 * n * std::pow(s, 1.5));
-    cost.bytes += 18 * 100 * n * std::sqrt(s);  // 8 per entry, and more for the update matrices of all subtrees
+    cost.entries += 100 * n * std::sqrt(s);
   }
   return cost;
 }
@@ -141,7 +141,7 @@ void AutoSolver::analyze(const BlockPattern& pattern) {
   is_analyzed_ = {};
   is_chosen_ = has_chosen_ = false;
   prediction_ = predict_cholesky(pattern);
-  fits_ = prediction_.bytes < static_cast<double>(std::min(memory_limit_, free_memory()));
+  fits_ = prediction_.bytes() < static_cast<double>(std::min(memory_limit_, free_memory()));
   const int rows = std::max(1, pattern.rows());
   const double f = prediction_.flops / rows;
   affordable_ = f / kFlopsPerIteration;
@@ -228,8 +228,8 @@ std::string AutoSolver::description() const {
   if (!has_chosen_) return "auto";
   const std::string flops = "a factorization needs about " + approximate(prediction_.flops) + " flops";
   std::string text = "auto: " + chosen().description() + ", since ";
-  text +=
-      fits_ ? flops : "a factor needs about " + approximate(prediction_.bytes / 1e6) + " MB, more than the free memory";
+  text += fits_ ? flops
+                : "a factor needs about " + approximate(prediction_.bytes() / 1e6) + " MB, more than the free memory";
   if (expected_ > 0)
     text += std::isfinite(expected_) ? " and block_jacobi about " + approximate(expected_) + " iterations"
                                      : " and block_jacobi is unlikely to converge";

@@ -33,7 +33,7 @@ TEST(CostPrediction, IsWithinFactorThreeOfExactCounts) {
     const CostPrediction predicted = predict_cholesky(*H.pattern);
     const CholeskyAnalysis exact = find_supernodes(*H.pattern, fill_reducing_order(*H.pattern)).cost;
     EXPECT_LT(std::abs(std::log(predicted.flops / exact.flops)), std::log(3.0)) << box.nx << " x " << box.ny;
-    EXPECT_LT(std::abs(std::log(predicted.bytes / (18.0 * static_cast<double>(exact.nnz)))), std::log(3.0))
+    EXPECT_LT(std::abs(std::log(predicted.entries / static_cast<double>(exact.nnz))), std::log(3.0))
         << box.nx << " x " << box.ny;
   }
 }

@@ -4,30 +4,56 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "linalg/auto_solver.h"
 #include "math/vectors.h"
 
 namespace aspic {
+namespace {
 
-void RowCorrection::collect_rows(const BlockSparse& H) {
+// If the factor of all rows with stencils had more than kLarge times the entries of H, only rows of strong stencils are
+// corrected, which couple two rows by more than kStrong times the smaller diagonal. For eight layers of cloth this
+// halves the time per step, although iterations quadruple; without any correction it would be a tenth longer.
+constexpr double kLarge = 2, kStrong = 0.3;
+
+bool is_strong(const Stencil& stencil, const BlockSparse& H) {
+  const auto diagonal = [&](int row) { return trace(H.block[H.pattern->diagonal(row)]); };
+  bool is_any = false;
+  for_each_block(stencil, [&](int i, int j, const Mat3d& K) {
+    const double weak = kStrong * std::min(diagonal(i), diagonal(j));
+    is_any = is_any || squared_norm(K) > weak * weak;
+  });
+  return is_any;
+}
+
+}  // namespace
+
+template <class Test>
+void RowCorrection::collect_rows(const BlockSparse& H, const Test& is_included) {
   place_.assign(H.pattern->rows(), -1);
   for (const Stencil& stencil : H.stencils)
-    for (const int row : stencil.row)
-      if (row >= 0) place_[row] = 0;
+    if (is_included(stencil))
+      for (const int row : stencil.row)
+        if (row >= 0) place_[row] = 0;
   rows_.clear();
   for (int row = 0; row < H.pattern->rows(); ++row)
     if (place_[row] == 0) place_[row] = static_cast<int>(rows_.size()), rows_.push_back(row);
 }
 
-bool RowCorrection::factorize_rows(const BlockSparse& H) {
+// Returns the pattern of H restricted to rows_.
+BlockPattern RowCorrection::restricted_pattern(const BlockSparse& H) const {
   const BlockPattern& p = *H.pattern;
   Couplings couplings;
+  const auto add = [&](int i, int j) {
+    if (place_[i] >= 0 && place_[j] >= 0) couplings.emplace_back(place_[i], place_[j]);
+  };
   for (const int row : rows_)
-    for (int64_t s = p.row_start[row]; s < p.diagonal(row); ++s)
-      if (place_[p.column[s]] >= 0) couplings.emplace_back(place_[row], place_[p.column[s]]);
-  for (const Stencil& stencil : H.stencils)
-    for_each_block(stencil, [&](int i, int j, const Mat3d&) { couplings.emplace_back(place_[i], place_[j]); });
-  A_.reset();
-  pattern_ = make_pattern(static_cast<int>(rows_.size()), std::move(couplings));
+    for (int64_t s = p.row_start[row]; s < p.diagonal(row); ++s) add(row, p.column[s]);
+  for (const Stencil& stencil : H.stencils) for_each_block(stencil, [&](int i, int j, const Mat3d&) { add(i, j); });
+  return make_pattern(static_cast<int>(rows_.size()), std::move(couplings));
+}
+
+bool RowCorrection::factorize_rows(const BlockSparse& H) {
+  const BlockPattern& p = *H.pattern;
   A_.emplace(pattern_);
   for (const int row : rows_)
     for (int64_t s = p.row_start[row]; s < p.row_start[row + 1]; ++s)
@@ -35,6 +61,7 @@ bool RowCorrection::factorize_rows(const BlockSparse& H) {
         A_->block[pattern_.slot(place_[row], column)] = H.block[s];
   for (const Stencil& stencil : H.stencils)
     for_each_block(stencil, [&](int i, int j, const Mat3d& K) {  // place_ preserves the order of rows
+      if (place_[i] < 0 || place_[j] < 0) return;
       Mat3d& block = A_->block[pattern_.slot(place_[std::max(i, j)], place_[std::min(i, j)])];
       block = block + (i > j ? K : transpose(K));
     });
@@ -46,7 +73,13 @@ bool RowCorrection::factorize(const BlockSparse& H) {
   H_ = &H;
   rows_.clear();
   if (H.stencils.empty()) return true;
-  collect_rows(H);
+  A_.reset();
+  collect_rows(H, [](const Stencil&) { return true; });
+  pattern_ = restricted_pattern(H);
+  if (predict_cholesky(pattern_).entries > kLarge * 9 * static_cast<double>(H.pattern->block_count())) {
+    collect_rows(H, [&](const Stencil& stencil) { return is_strong(stencil, H); });
+    pattern_ = restricted_pattern(H);
+  }
   for (auto* v : {&b_, &x_}) v->resize(3 * rows_.size());
   r_.resize(3 * static_cast<size_t>(H.pattern->rows()));
   return factorize_rows(H);

@@ -13,8 +13,8 @@ namespace aspic {
 
 class RowCorrection {
  public:
-  // Factorizes the rows and columns of H with stencils. Returns false if they are not positive definite. H must outlive
-  // the calls of apply().
+  // Factorizes the rows and columns of H with stencils; if that is expensive, only those of strong stencils. Returns
+  // false if they are not positive definite. H must outlive the calls of apply().
   bool factorize(const BlockSparse& H);
   void drop() { rows_.clear(); }                     // apply() then uses the preconditioner alone
   bool is_needed() const { return !rows_.empty(); }  // false: no stencils
@@ -23,14 +23,16 @@ class RowCorrection {
   void apply(ApproximateInverse& preconditioner, std::span<const double> r, std::span<double> z);
 
  private:
-  void collect_rows(const BlockSparse& H);
+  template <class Test>
+  void collect_rows(const BlockSparse& H, const Test& is_included);
+  BlockPattern restricted_pattern(const BlockSparse& H) const;
   bool factorize_rows(const BlockSparse& H);
   template <class Visit>
   void visit_outside(int k, const Visit& visit) const;
   void solve_rows() { cholesky_.substitute(b_, x_); }
 
   const BlockSparse* H_ = nullptr;
-  std::vector<int> rows_;   // rows of the stencils, ascending
+  std::vector<int> rows_;   // rows of the included stencils, ascending
   std::vector<int> place_;  // place of each row of H in rows_; -1: absent
   BlockPattern pattern_;
   std::optional<BlockSparse> A_;  // rows and columns rows_ of H

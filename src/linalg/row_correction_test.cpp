@@ -33,10 +33,10 @@ void add_spring(const std::array<int, 4>& row, double k, const Vec3d& n, BlockSp
 }
 
 // A lattice with springs of stiffness k between vertices that its pattern does not couple.
-Matrix lattice_in_contact(double k) {
+Matrix lattice_in_contact(double k, int springs = 40) {
   Matrix H = spring_lattice({.nx = 10, .ny = 6, .nz = 6, .stiffness = 100});
   const std::vector<double> normals = random_vector(3 * 40, 7);
-  for (int s = 0; s < 40; ++s) {
+  for (int s = 0; s < springs; ++s) {
     const Vec3d n = vec_at(normals, s);
     const int a = 5 * s, b = H.rows() - 1 - 4 * s;
     add_spring({b, a, a + 1, a + 2}, k, (1 / norm(n)) * n, H.values);
@@ -104,6 +104,18 @@ TEST(RowCorrection, IsSymmetric) {
   correction.apply(jacobi, u, Mu);
   correction.apply(jacobi, v, Mv);
   EXPECT_NEAR(dot(Mu, v), dot(Mv, u), 1e-10 * norm(Mu) * norm(v));
+}
+
+TEST(RowCorrection, LeavesOutWeakStencilsOnlyIfTheirFactorIsLarge) {
+  const auto is_needed = [](double k, int springs) {
+    const Matrix H = lattice_in_contact(k, springs);
+    RowCorrection correction;
+    EXPECT_TRUE(correction.factorize(H.values));
+    return correction.is_needed();
+  };
+  EXPECT_TRUE(is_needed(1, 3));
+  EXPECT_FALSE(is_needed(1, 40));
+  EXPECT_TRUE(is_needed(1e4, 40));
 }
 
 TEST(RowCorrection, RejectsIndefiniteRows) {
