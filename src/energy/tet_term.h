@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/huge_pages.h"
 #include "base/parallel.h"
 #include "energy/coloring.h"
 #include "energy/energy.h"
@@ -161,7 +162,7 @@ class TetTerm : public Base {
   virtual const std::vector<Params<Pack>>& params(const Energy::Context&) const { return params_; }
 
   [[no_unique_address]] M material_;  // empty except for a CustomDensity
-  std::vector<Batch> batches_;
+  LargeVector<Batch> batches_;
   std::vector<Params<Pack>> params_;
 
  private:

@@ -190,7 +190,7 @@ void expect_product(const AffineCoarsening& c, const BlockSparse& fine, BlockSpa
   MatrixRestriction restriction;
   restriction.reserve(c);
   const int threads = thread_count();
-  std::vector<Mat3d> first;
+  LargeVector<Mat3d> first;
   for (const int count : {1, 2, 3, 8}) {
     set_thread_count(count);
     for (Mat3d& block : coarse.block) block = 7.0 * identity3<double>();  // must be overwritten

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/huge_pages.h"
 #include "math/small.h"
 
 namespace aspic {
@@ -15,11 +16,11 @@ using Couplings = std::vector<std::pair<int, int>>;  // vertex pairs that share 
 
 struct BlockPattern {
   std::vector<int64_t> row_start;  // rows + 1 entries
-  std::vector<int> column;         // columns c <= r of each row, ascending; the last one is the diagonal
+  LargeVector<int> column;         // columns c <= r of each row, ascending; the last one is the diagonal
   // The transposed pattern: for each row r, the rows below it with a block in column r, and the slots of these blocks.
   std::vector<int64_t> upper_start;
-  std::vector<int> upper_row;
-  std::vector<int64_t> upper_slot;
+  LargeVector<int> upper_row;
+  LargeVector<int64_t> upper_slot;
   uint64_t version = 0;  // unique among all patterns of this process
 
   // Geometry and stiffness for the coarse spaces of multigrid; empty if unknown.
@@ -54,7 +55,7 @@ void for_each_block(const Stencil& stencil, Visit visit) {
 // A matrix of the blocks of a pattern, which must outlive it, and of stencils.
 struct BlockSparse {
   const BlockPattern* pattern = nullptr;
-  std::vector<Mat3d> block;       // one per entry of pattern->column
+  LargeVector<Mat3d> block;       // one per entry of pattern->column
   std::vector<Stencil> stencils;  // added to the matrix; their pattern may change
 
   explicit BlockSparse(const BlockPattern& p) : pattern(&p), block(p.block_count()) {}

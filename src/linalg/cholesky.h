@@ -57,8 +57,8 @@ class Cholesky : public LinearSolver {
   Subtrees subtrees_;
   std::vector<int> last_child_, sibling_;  // supernodal tree; children in reverse order
   std::vector<DenseCholesky> kernels_;     // one per task, then one for the top
-  std::vector<double> L_;                  // the panels, column-major
-  std::vector<double> workspace_;  // update matrices; during a solve, right-hand sides of the rows below each panel
+  LargeVector<double> L_;                  // the panels, column-major
+  LargeVector<double> workspace_;  // update matrices; during a solve, right-hand sides of the rows below each panel
   std::vector<int64_t> target_;    // index in L_ of each block of H
   std::vector<double> permuted_, residual_;
   // Conjugate gradients for matrices with stencils, preconditioned by the factorization of the matrix without them.

@@ -99,7 +99,7 @@ TEST(Cholesky, IsReusableAfterFailures) {
   solver.analyze(*H.pattern);
   ASSERT_TRUE(solver.factorize(H.values));
   for (const double shift : {-2.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
-    const std::vector<Mat3d> saved = H.values.block;
+    const LargeVector<Mat3d> saved = H.values.block;
     add_block(H.values, 100, 100, (shift * 100) * identity3<double>());
     EXPECT_FALSE(solver.factorize(H.values));
     EXPECT_FALSE(solver.refused());

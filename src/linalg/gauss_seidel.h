@@ -38,9 +38,9 @@ class GaussSeidel {
  private:
   struct Triangle {
     std::vector<int64_t> start;  // per vertex
-    std::vector<int> column;
+    LargeVector<int> column;
     std::vector<int> source;   // slot of the first block of the two vertices; bitwise complement: transposed
-    std::vector<float> value;  // blocks, see Kernel
+    LargeVector<float> value;  // blocks, see Kernel
   };
   template <int B>
   struct Kernel;
@@ -55,7 +55,7 @@ class GaussSeidel {
   std::vector<Range> range_;
   std::vector<std::vector<Range>> tasks_;  // per color
   Triangle lower_, upper_;
-  std::vector<float> own_, inverse_;  // diagonal blocks of the vertices and their inverses
+  LargeVector<float> own_, inverse_;  // diagonal blocks of the vertices and their inverses
 };
 
 }  // namespace aspic
