@@ -60,7 +60,8 @@ class HessianOnDemand : public HessianPolicy {
   }
 
   bool compute(NewtonSystem& system, NewtonTask& task) override {
-    is_modified_ = std::exchange(skip_exact_, false);
+    const bool waits = modified_in_a_row_ > kModifiedBeforeTruncated && modified_in_a_row_ % kExactEvery != 0;
+    is_modified_ = std::exchange(skip_exact_, false) || waits;
     if (!is_modified_ && solve_exact(system, task)) {
       modified_in_a_row_ = 0;
       return true;
@@ -82,6 +83,10 @@ class HessianOnDemand : public HessianPolicy {
   static constexpr int kAbsoluteSpan = 8;  // number of directions; doubles after each overshoot
   static constexpr int kModifiedBeforeTruncated =
       2;  // successive directions of modified Hessians before truncated ones
+
+  // After several modified Hessians in a row, the exact one is tried every fourth time. The first five steps of cloth
+  // that falls on a sphere (10 300 vertices) take 40 s instead of 56.
+  static constexpr int kExactEvery = 4;
 
   // Contact forces bend around small gaps, which makes Hessians indefinite where bodies are not. To clamp contact is
   // then enough, also for the rest of the minimization.
