@@ -1,6 +1,7 @@
 // Symmetric sparse matrices of 3x3 blocks, and solvers for them: analyze once per pattern, factorize once per matrix,
 // solve once per right-hand side.
 #pragma once
+#include "base/huge_pages.h"
 #include "base/stop_token.h"
 #include "base/stopwatch.h"
 #include "linalg/block_sparse.h"
