@@ -323,7 +323,7 @@ class Setup(CommandLine):
     """`build` of tools/setup.sh, which ./run calls, with a fake ninja."""
 
     def build(self, seconds, code=0):
-        for name, text in ("ninja", f"/bin/sleep {seconds}\nexit {code}\n"), ("sleep", "/bin/sleep 0.5\n"):
+        for name, text in ("ninja", f"echo '[3/9] Building x'\n/bin/sleep {seconds}\nexit {code}\n"), ("sleep", "/bin/sleep 0.5\n"):
             (self.folder / self.write(name, "#!/bin/sh\n" + text)).chmod(0o755)
         script = f"root={self.folder}; . {pathlib.Path(__file__).parent.parent}/tools/setup.sh; build all"
         return subprocess.run(["sh", "-c", script], env={"PATH": f"{self.folder}:/usr/bin:/bin"}, capture_output=True,
@@ -331,10 +331,23 @@ class Setup(CommandLine):
 
     def test_only_long_builds_are_announced(self):
         self.assertEqual(self.build(0).stderr, "")
-        self.assertIn("Building", self.build(2).stderr)
+        self.assertIn("Building everything and its tests ... [3/9]\n", self.build(2).stderr)
         failed = self.build(0, code=1)
         self.assertEqual(failed.returncode, 1)
         self.assertIn("the build failed", failed.stderr)
+
+    def run_script(self, *arguments):
+        return subprocess.run([pathlib.Path(__file__).parent.parent / "run", *arguments], capture_output=True, text=True,
+                              env={"PATH": "/usr/bin:/bin"}, timeout=10)
+
+    def test_help_and_errors_name_all_commands_without_a_build(self):
+        of_aspic = re.findall(r"^  ([a-z][a-z-]*)  ", self.aspic("--help").stdout, re.M)
+        wrong = self.run_script("rum")
+        self.assertEqual(wrong.returncode, 1)
+        text = self.run_script("--help").stdout
+        for name in {*of_aspic, "python", "notebook", "site", "gallery", "render"}:
+            self.assertRegex(text, rf"\b{name}\b")
+            self.assertRegex(wrong.stderr, rf"\b{name}\b")
 
 
 class Interruption(CommandLine):

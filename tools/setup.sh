@@ -12,7 +12,7 @@ core_packages="libeigen3-dev libspectra-dev libmetis-dev libmuparser-dev libtoml
 mesher_packages="libcgal-dev"
 viewer_programs="nodejs:node npm"
 viewer_packages="libboost-dev"
-case "${ASPIC_VIEWER-}" in 0 | OFF) viewer_programs= viewer_packages= ;; esac
+case "${ASPIC_VIEWER-}" in 0 | OFF) viewer_programs='' viewer_packages='' ;; esac
 test_programs="python3 chromium ffmpeg codespell $plot_programs"
 test_packages="libgtest-dev libgmock-dev libbenchmark-dev libsuitesparse-dev python3-meshio python3-jsonschema"
 python_packages="pybind11-dev python3-dev python3-numpy python3-scipy python3-matplotlib"
@@ -122,16 +122,47 @@ configure() {
     die "the build could not be configured"
 }
 
-# build TARGETS: on a terminal ninja shows one line of progress; in a pipe a sentence if it takes long.
-build() {
-  if [ -t 2 ]; then
-    ninja -C "$build_dir" "$@" >&2 || die "the build failed"
-    return
-  fi
-  (sleep 5 >/dev/null 2>&1 && say "Building (the first time takes a few minutes) ...") &
+# name_of TARGETS: what a user gets from them.
+name_of() {
+  case $1 in
+    aspic) echo "the library" ;;
+    aspic-run) echo "the simulation, without viewer" ;;
+    aspic_cli) echo "the program with viewer and renderer" ;;
+    _aspic) echo "the Python package" ;;
+    aspic_engine) echo "the program for browsers, with threads" ;;
+    site) echo "the page for browsers" ;;
+    bench_*) echo "the benchmark" ;;
+    all) echo "everything and its tests" ;;
+    *) echo "$1" ;;
+  esac
+}
+
+# start_notice TEXT LOG: while this script lives, shows the text with ninja's last count in the log: on a terminal one line that
+# changes, in a pipe a line every half minute; nothing in the first seconds.
+start_notice() {
+  pause=30 format='%s ... %s\n'
+  [ ! -t 2 ] || pause=1 format='\r\033[K%s ... %s'
+  (
+    sleep 5
+    while kill -0 $$; do
+      # shellcheck disable=SC2059
+      printf "$format" "$1" "$(sed -n 's/^\(\[[0-9/]*\]\).*/\1/p' "$2" | tail -n 1)" >&3
+      sleep $pause
+    done
+  ) 3>&2 >/dev/null 2>&1 &
   notice=$!
-  if logged build ninja -C "$build_dir" "$@"; then built=1; else built=; fi
+}
+
+end_notice() {
   kill "$notice" 2>/dev/null || true
+  [ ! -t 2 ] || printf '\r\033[K' >&2
+}
+
+# build TARGETS: ninja's output goes to a log, shown when it fails.
+build() {
+  start_notice "Building $(name_of "$@")" "$log_dir/build.log"
+  if logged build ninja -C "$build_dir" "$@"; then built=1; else built=; fi
+  end_notice
   [ -n "$built" ] || die "the build failed"
 }
 
@@ -242,6 +273,8 @@ wasm_preset() {
 
 # build_site [threads]: builds out/site/index.html; with `threads` also a file beside it with an engine for isolated pages.
 build_site() {
+  [ -f "$root/out/site/index.html" ] ||
+    say "Building the page takes 5 to 25 minutes the first time; its last step, the link, takes several of them."
   if [ "${1-}" = threads ]; then
     wasm_preset wasm-threads
     build aspic_engine
