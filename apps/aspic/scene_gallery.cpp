@@ -86,9 +86,9 @@ const GalleryScene& scene_named(const std::string& name, const std::vector<Galle
 std::string gallery_page(const std::vector<GalleryScene>& scenes) {
   constexpr int kColumns = 3;
   std::string text =
-      "# Gallery\n\nFor newcomers: scenes that run in at most a minute. `aspic gallery NAME` runs one into `out/NAME`; "
-      "a "
-      "picture links its file.\n";
+      "# Gallery\n\nFor newcomers: scenes that take at most a minute on two cores, **cape** several minutes. `aspic "
+      "gallery NAME`, in a "
+      "checkout `./run gallery NAME`, runs one into `out/NAME`; a picture links its file.\n";
   std::string level;
   int column = 0;
   const auto end_row = [&] {
