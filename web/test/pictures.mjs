@@ -40,6 +40,13 @@ async function openPage(browser, address, height) {
   return page;
 }
 
+// Settings and plots, which are closed at first.
+async function openPanels(page) {
+  const settings = page.locator('#toolbar [aria-keyshortcuts="G"]');
+  if ((await settings.getAttribute("aria-expanded")) === "false") await settings.click();
+  if (await page.locator("#dock.closed").count()) await page.keyboard.press("d");
+}
+
 // Waits for that step or a later one.
 const reached = (page, step) =>
   page.waitForFunction((wanted) => Number(document.querySelector(".place")?.textContent.match(/^step (\d+)/)?.[1]) >= wanted, step);
@@ -72,8 +79,9 @@ async function highestPoint(page) {
 async function drawViewer(browser) {
   const address = await startProgram("scenes/bunny.toml", ["--set", "body.0.deform.displacement=[0, 0, 0]"]);
   const page = await openPage(browser, address, 800);
+  await openPanels(page);
   await page.getByRole("tab", { name: "Microscope" }).click();
-  await page.getByRole("combobox", { name: "Color by" }).selectOption("displacement");
+  await page.locator("#right .lil-controller").filter({ hasText: "Color by" }).locator("select").first().selectOption("displacement");
   const [x, y] = await highestPoint(page);
   await page.keyboard.press(" ");
   await page.mouse.down();
@@ -82,7 +90,7 @@ async function drawViewer(browser) {
     await reached(page, 50 * share);
   }
   await page.keyboard.press(" "); // all panels show one step while the mouse still pulls
-  await page.getByRole("button", { name: "Play" }).waitFor();
+  await page.getByRole("button", { name: "Play", exact: true }).waitFor();
   await settled(page);
   await page.screenshot({ path: join(out, "viewer.png") });
 }
@@ -91,6 +99,7 @@ async function drawViewer(browser) {
 async function drawLandscape(browser) {
   const address = await startProgram("scenes/lecture/53_hard_step.toml", ["--set", `mesh=${join(root, "scenes/bunny.mesh")}`, "--set", "scale=0.1"]);
   const page = await openPage(browser, address, 1200);
+  await openPanels(page);
   await page.getByRole("tab", { name: "Landscape" }).click();
   await page.keyboard.press("s");
   await reached(page, 1);
