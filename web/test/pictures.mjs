@@ -112,9 +112,8 @@ async function drawLandscape(browser) {
 // The chamber of a heart with its fibres, at rest and contracted.
 async function drawHeart(browser) {
   const page = await openPage(browser, await startProgram("scenes/tissue/heart.toml"), 800);
-  for (const key of "ww") await page.keyboard.press(key); // without wires
   const box = await page.locator("#views .view").boundingBox();
-  const clip = { x: box.x + box.width / 2 - 240, y: box.y, width: 480, height: box.height };
+  const clip = { x: box.x + box.width / 2 - 240, y: box.y, width: 480, height: box.height - 60 }; // above the hint
   await settled(page);
   await page.screenshot({ path: join(out, "heart0.png"), clip });
   for (let step = 1; step <= 13; ++step) {
