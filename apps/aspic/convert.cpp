@@ -1,4 +1,4 @@
-// `aspic convert`: converts between mesh formats.
+// `aspic convert`: converts between mesh formats, and runs to animated glTF.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -8,9 +8,13 @@
 #include "aspic/commands.h"
 #include "base/error.h"
 #include "base/printable.h"
+#include "io/atomic_file.h"
 #include "io/mesh_file.h"
 #include "mesh/elements.h"
 #include "mesh/surface.h"
+#include "results/run_directory.h"
+#include "results/run_gltf.h"
+#include "scene/scene.h"
 
 namespace aspic::cli {
 namespace {
@@ -44,7 +48,24 @@ int write(const ConvertArguments& arguments, const Mesh& mesh, const std::string
   return exit_done;
 }
 
+int convert_run(const ConvertArguments& arguments) {
+  const RunLayout layout(arguments.in);
+  if (!layout.holds_run())
+    throw InvalidInput(arguments.in.string() + ": is a folder without a run (there is no steps.csv of one)");
+  if (arguments.out.extension() == ".usda")
+    throw InvalidInput(
+        fmt::format("{}: a run writes it itself (output.usd): {}", arguments.out.string(), layout.usd().string()));
+  if (arguments.out.extension() != ".glb")
+    throw InvalidInput(arguments.out.string() + ": a run becomes animated glTF; name the file .glb");
+  const RunGltf gltf = run_glb(layout, load_scene(scene_of_run(arguments.in)));
+  write_file(arguments.out, gltf.bytes);
+  fmt::print("{}: {} of {} frames, {:.1f} MB\n", printable(arguments.out.string()), gltf.frames, gltf.frames_of_run,
+             1e-6 * static_cast<double>(gltf.bytes.size()));
+  return exit_done;
+}
+
 int convert(const ConvertArguments& arguments) {
+  if (fs::is_directory(arguments.in)) return convert_run(arguments);
   const MeshFormat& format = format_of(arguments.out);
   std::vector<std::string> notes;
   const auto mesh = read_mesh(arguments.in, &notes);
@@ -80,12 +101,14 @@ std::string format_table() {
 
 void add_convert(CLI::App& app, Action& action) {
   const auto arguments = std::make_shared<ConvertArguments>();
-  CLI::App* command = app.add_subcommand("convert", "Converts a mesh to another format, selected by the file name");
+  CLI::App* command = app.add_subcommand(
+      "convert", "Converts a mesh to another format, selected by the file name, or a run to animated glTF");
   command->footer([] {
-    return "\nExamples:\n  aspic convert bunny.msh bunny.vtu\n  aspic convert bunny.mesh bunny.obj    the boundary\n" +
+    return "\nExamples:\n  aspic convert bunny.msh bunny.vtu\n  aspic convert bunny.mesh bunny.obj    the boundary\n"
+           "  aspic convert out/bunny bunny.glb     the skins and obstacles of a run, at most 240 frames\n" +
            format_table();
   });
-  command->add_option("IN", arguments->in, "Mesh to read")->required();
+  command->add_option("IN", arguments->in, "Mesh, or folder of a run")->required();
   command->add_option("OUT", arguments->out, "Mesh to write; an existing file is replaced")->required();
   command->add_flag("--surface", arguments->surface, "Write the boundary of a tet mesh instead of its tets");
   command->add_flag("--binary", arguments->binary, "Write the binary encoding if the format has both");

@@ -131,7 +131,8 @@ Json animation_reply(const ShownSide& shown, const std::string& format, std::opt
     if (up == UpAxis::z) turn_upright(motion, camera);
     std::vector<double> times;
     for (const double time : motion.times) times.push_back(time - motion.times.front());
-    reply = file_reply(name + ".glb", glb({name, shown.surface.triangles, motion.frames, std::move(times), camera}));
+    reply =
+        file_reply(name + ".glb", glb({{{name, shown.surface.triangles, motion.frames}}, std::move(times), camera}));
   }
   reply["note"] = fmt::format("{} frames, {:.3g} a second", motion.frames.size(), motion.per_second);
   return reply;

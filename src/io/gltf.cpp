@@ -69,9 +69,11 @@ class Arrays {
   int count_ = 0;
 };
 
-std::vector<uint32_t> corners(std::span<const Triangle> triangles) {
+std::vector<uint32_t> corners(const GltfMesh& mesh) {
   std::vector<uint32_t> indices;
-  for (const Triangle& t : triangles) indices.insert(indices.end(), t.begin(), t.end());
+  for (const Segment& s : mesh.segments) indices.insert(indices.end(), s.begin(), s.end());
+  if (mesh.segments.empty())
+    for (const Triangle& t : mesh.triangles) indices.insert(indices.end(), t.begin(), t.end());
   return indices;
 }
 
@@ -108,6 +110,59 @@ struct CameraText {
   }
 };
 
+std::string number(size_t index) { return std::to_string(index); }
+
+// The nodes, meshes and the animation of all of them.
+class SceneText {
+ public:
+  void add(const GltfMesh& mesh) {
+    const std::string comma = count_ == 0 ? "" : ",", name = json_text(mesh.name);
+    const std::string position = number(arrays_.add(mesh.frames[0], 3)), indices = number(arrays_.add(corners(mesh)));
+    nodes_ += comma + "{\"mesh\":" + number(count_) + ",\"name\":" + name + "}";
+    meshes_ += comma + "{\"name\":" + name + ",\"primitives\":[{\"attributes\":{\"POSITION\":" + position +
+               "},\"material\":0,\"indices\":" + indices + (mesh.segments.empty() ? "" : ",\"mode\":1") +
+               targets(mesh) + "}]}";
+    if (mesh.frames.size() > 1) moving_.push_back(count_);
+    ++count_;
+  }
+  std::string json(const GltfScene& scene) {
+    const CameraText camera = scene.camera ? CameraText(*scene.camera) : CameraText();
+    std::string listed;
+    for (size_t i = 0; i < count_ + (scene.camera ? 1 : 0); ++i) listed += (i > 0 ? "," : "") + number(i);
+    const std::string animations = animation(scene.times);
+    return R"({"asset":{"version":"2.0","generator":"Aspic"},"materials":[{"doubleSided":true}],)"
+           R"("scene":0,"scenes":[{"nodes":[)" +
+           listed + R"(]}],"nodes":[)" + nodes_ + camera.node + "]" + camera.list + ",\"meshes\":[" + meshes_ + "]" +
+           animations + "," + arrays_.json() + "}";
+  }
+  const std::string& bytes() const { return arrays_.bytes(); }
+
+ private:
+  std::string targets(const GltfMesh& mesh) {
+    std::string list;
+    for (size_t k = 1; k < mesh.frames.size(); ++k)
+      list += std::string(k > 1 ? "," : "") +
+              "{\"POSITION\":" + number(arrays_.add(difference(mesh.frames[k], mesh.frames[0]), 3)) + "}";
+    return list.empty() ? "" : ",\"targets\":[" + list + "]";
+  }
+  std::string animation(const std::vector<double>& times) {
+    if (moving_.empty()) return "";
+    std::string channels;
+    for (const size_t node : moving_)
+      channels += (channels.empty() ? "" : ",") + std::string("{\"sampler\":0,\"target\":{\"node\":") + number(node) +
+                  ",\"path\":\"weights\"}}";
+    const std::string input = number(arrays_.add(std::vector<float>(times.begin(), times.end()), 1));
+    const std::string output = number(arrays_.add(weights_of(times.size()), 1));
+    return ",\"animations\":[{\"channels\":[" + channels + "],\"samplers\":[{\"input\":" + input +
+           ",\"output\":" + output + ",\"interpolation\":\"LINEAR\"}]}]";
+  }
+
+  Arrays arrays_;
+  std::string nodes_, meshes_;
+  std::vector<size_t> moving_;
+  size_t count_ = 0;
+};
+
 void append_chunk(std::string& file, ChunkType type, std::string bytes, char filler) {
   bytes.resize((bytes.size() + 3) / 4 * 4, filler);
   append_word(file, static_cast<uint32_t>(bytes.size()));
@@ -117,36 +172,16 @@ void append_chunk(std::string& file, ChunkType type, std::string bytes, char fil
 
 }  // namespace
 
-std::string glb(const GltfMesh& mesh) {
-  ASPIC_CHECK(!mesh.frames.empty() && mesh.frames.size() == mesh.times.size());
-  Arrays arrays;
-  const auto number = [](int accessor) { return std::to_string(accessor); };
-  const std::string position = number(arrays.add(mesh.frames[0], 3)),
-                    indices = number(arrays.add(corners(mesh.triangles)));
-  std::string targets, animations;
-  for (size_t k = 1; k < mesh.frames.size(); ++k)
-    targets += std::string(k > 1 ? "," : "") +
-               "{\"POSITION\":" + number(arrays.add(difference(mesh.frames[k], mesh.frames[0]), 3)) + "}";
-  if (mesh.frames.size() > 1) {
-    targets = ",\"targets\":[" + targets + "]";
-    const std::string times = number(arrays.add(std::vector<float>(mesh.times.begin(), mesh.times.end()), 1));
-    const std::string weights = number(arrays.add(weights_of(mesh.frames.size()), 1));
-    animations =
-        ",\"animations\":[{\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,\"path\":\"weights\"}}],"
-        "\"samplers\":[{\"input\":" +
-        times + ",\"output\":" + weights + ",\"interpolation\":\"LINEAR\"}]}]";
+std::string glb(const GltfScene& scene) {
+  SceneText text;
+  for (const GltfMesh& mesh : scene.meshes) {
+    ASPIC_CHECK(!mesh.frames.empty() && (mesh.frames.size() == 1 || mesh.frames.size() == scene.times.size()));
+    text.add(mesh);
   }
-  const std::string name = json_text(mesh.name);
-  const CameraText camera = mesh.camera ? CameraText(*mesh.camera) : CameraText();
-  const std::string json =
-      R"({"asset":{"version":"2.0","generator":"Aspic"},"materials":[{"doubleSided":true}],)"
-      R"("scene":0,"scenes":[{"nodes":)" +
-      std::string(mesh.camera ? "[0,1]" : "[0]") + R"(}],"nodes":[{"mesh":0,"name":)" + name + "}" + camera.node + "]" +
-      camera.list + ",\"meshes\":[{\"name\":" + name + ",\"primitives\":[{\"attributes\":{\"POSITION\":" + position +
-      "},\"material\":0,\"indices\":" + indices + targets + "}]}]" + animations + "," + arrays.json() + "}";
+  const std::string json = text.json(scene);
   std::string chunks;
   append_chunk(chunks, kJson, json, ' ');
-  append_chunk(chunks, kBinary, arrays.bytes(), '\0');
+  append_chunk(chunks, kBinary, text.bytes(), '\0');
   std::string file = "glTF";
   append_word(file, 2);
   append_word(file, static_cast<uint32_t>(12 + chunks.size()));

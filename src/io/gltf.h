@@ -1,4 +1,4 @@
-// Binary glTF 2.0 (.glb) [Khronos]: one mesh whose frames are morph targets, for Blender, browsers and game engines.
+// Binary glTF 2.0 (.glb) [Khronos]: meshes whose frames are morph targets, for Blender, browsers and game engines.
 // Lengths are in meters, Y is up.
 #pragma once
 #include <optional>
@@ -14,14 +14,19 @@ namespace aspic {
 struct GltfMesh {
   std::string name;
   std::span<const Triangle> triangles;
-  std::vector<std::vector<float>> frames;  // at least one; 3 per vertex [m]
-  std::vector<double> times;               // time of each frame, ascending [s]
+  std::vector<std::vector<float>> frames = {};  // one, or one per time; 3 per vertex [m]
+  std::span<const Segment> segments = {};       // not empty: lines instead of triangles
+};
+
+struct GltfScene {
+  std::vector<GltfMesh> meshes;
+  std::vector<double> times;  // time of each frame, ascending [s]
   std::optional<Camera> camera = {};
 };
 
 // The material is two-sided, for sheets. There are no normals, so that players compute those of the moved triangles.
 // Players interpolate linearly between frames. The size grows quadratically with the number of frames, but only by 4
 // bytes per pair.
-std::string glb(const GltfMesh& mesh);
+std::string glb(const GltfScene& scene);
 
 }  // namespace aspic

@@ -42,6 +42,7 @@ targets = [read(t['POSITION']) for t in part['targets']]
 sampler = head['animations'][0]['samplers'][0]
 times, weights = read(sampler['input']), read(sampler['output'])
 assert head['animations'][0]['channels'][0]['target'] == {'node': 0, 'path': 'weights'}
+assert len(head['animations'][0]['channels']) == 1 and len(head['scenes'][0]['nodes']) == 2
 assert read(part['indices']) == (0, 1, 2)
 assert times == (0, 0.25, 0.5)
 n = len(targets)
@@ -52,9 +53,12 @@ assert frames == [[0, 0, 0, 1, 0, 0, 0, 1, 0], [0, 0, 1, 1, 0, 1, 0, 1, 1], [0, 
 TEST_F(BinaryGltf, IsReadByPython) {
   const std::vector<Triangle> triangles = {{0, 1, 2}};
   write_file(path("a.glb"),
-             glb({.name = "a \"body\"",
-                  .triangles = triangles,
-                  .frames = {{0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 0, 1, 1, 0, 1, 0, 1, 1}, {0, 2, 0, 1, 2, 0, 0, 3, 0}},
+             glb({.meshes = {{.name = "a \"body\"",
+                              .triangles = triangles,
+                              .frames = {{0, 0, 0, 1, 0, 0, 0, 1, 0},
+                                         {0, 0, 1, 1, 0, 1, 0, 1, 1},
+                                         {0, 2, 0, 1, 2, 0, 0, 3, 0}}},
+                             {.name = "fixed", .triangles = triangles, .frames = {{0, 0, 0, 1, 0, 0, 0, 1, 0}}}},
                   .times = {0, 0.25, 0.5}}));
   write_file(path("read.py"), kReader);
   const std::string command = "python3 '" + path("read.py").string() + "' '" + path("a.glb").string() + "'";

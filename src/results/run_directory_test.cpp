@@ -12,9 +12,12 @@
 #include "io/atomic_file.h"
 #include "io/checkpoint.h"
 #include "io/folder_test.h"
+#include "io/gltf_file.h"
+#include "io/pc2.h"
 #include "io/vtu.h"
 #include "mesh/generators.h"
 #include "mesh/surface.h"
+#include "results/run_gltf.h"
 
 namespace aspic {
 namespace {
@@ -261,6 +264,22 @@ TEST_F(RunResults, UsdSceneIsUprightForGravityAlongZ) {
   scene.gravity = {{0, 0, -9.81}};
   RunDirectory::create(path("run"), scene, ExistingRun::refuse).finish(scene.simulation);
   EXPECT_THAT(read_file(path("run/run.usda")), HasSubstr("upAxis = \"Z\""));
+}
+
+TEST_F(RunResults, GltfEndsAtTheLastFrame) {
+  run_whole(path("run"), {});
+  const RunGltf gltf = run_glb(RunLayout(path("run")), sagging_scene());
+  EXPECT_EQ(gltf.frames, kRunSteps + 1);
+  GltfFile file("run.glb", gltf.bytes, {});
+  const GltfFile::Json& part = file.item("meshes", 0)["primitives"][0];
+  const std::vector<double> start = file.reals(part["attributes"]["POSITION"], "VEC3"),
+                            moved = file.reals(part["targets"].back()["POSITION"], "VEC3");
+  const std::vector<float> last = Pc2Reader(path("run/skins/skin_soft_bar.pc2")).sample(kRunSteps);
+  ASSERT_EQ(start.size(), last.size());
+  for (size_t i = 0; i < last.size(); ++i) EXPECT_NEAR(start[i] + moved[i], last[i], 1e-6);
+  fs::remove_all(path("run/skins"));
+  EXPECT_THAT(message_of<InvalidInput>([&] { run_glb(RunLayout(path("run")), sagging_scene()); }),
+              HasSubstr("output.pc2 = true"));
 }
 
 TEST_F(RunResults, ResumeNamesTheDamagedFile) {
