@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/number_chars.h"
 #include "base/printable.h"
 #include "scene/expression.h"
 #include "scene/schema.h"
@@ -81,6 +82,27 @@ std::string expected(const Key& key) {
   return text;
 }
 
+// "in pascals: 2e4" for "20 kPa"; empty for other texts.
+std::string in_si_units(const std::string& text) {
+  struct Unit {
+    const char *name, *si;
+    double factor;
+  };
+  constexpr Unit kUnits[] = {{"Pa", "pascals", 1},      {"kPa", "pascals", 1e3}, {"MPa", "pascals", 1e6},
+                             {"GPa", "pascals", 1e9},   {"mm", "meters", 1e-3},  {"cm", "meters", 1e-2},
+                             {"m", "meters", 1},        {"ms", "seconds", 1e-3}, {"s", "seconds", 1},
+                             {"g/cm^3", "kg/m^3", 1e3}, {"kg/m^3", "kg/m^3", 1}};
+  double number = 0;
+  const char* end = text.data() + text.size();
+  auto [rest, error] = from_chars(text.data(), end, number);
+  if (error != std::errc()) return "";
+  while (rest != end && *rest == ' ') ++rest;
+  for (const Unit& unit : kUnits)
+    if (std::string_view(rest, end - rest) == unit.name)
+      return std::string("in ") + unit.si + ": " + number_text(unit.factor * number);
+  return "";
+}
+
 class Checker {
  public:
   explicit Checker(const Schema& schema) : schema_(schema) {}
@@ -141,6 +163,8 @@ class Checker {
       const bool moves = key.accepts & (kMovingExpression | kMovingExpressions);
       Expression(value.text(), moves ? ExpressionVariables::position_and_time : ExpressionVariables::position);
     } catch (const InvalidInput& e) {
+      const std::string si = in_si_units(value.text());
+      if (!si.empty()) return wrong(value, key, si);
       error(value.place, key.name + ": " + e.what());
     }
   }
@@ -148,7 +172,10 @@ class Checker {
   void check_value(Value& value, const Key& key) {
     switch (kind_of(value, key.accepts)) {
       case 0:
-        return wrong(value, key, "this is " + type_name(value) + "; expected " + expected(key));
+        return wrong(
+            value, key,
+            "this is " + type_name(value) + "; expected " + expected(key) +
+                (value.is_text() && !in_si_units(value.text()).empty() ? ", " + in_si_units(value.text()) : ""));
       case kInteger:
         return check_number(value, value, key);
       case kNumber:
