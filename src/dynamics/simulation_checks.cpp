@@ -11,6 +11,7 @@
 #include "contact/contact_reach.h"
 #include "contact/overlaps.h"
 #include "math/vectors.h"
+#include "mesh/findings.h"
 #include "mesh/surface_locator.h"
 
 namespace aspic {
@@ -101,6 +102,14 @@ void require_outside(const ContactMesh& contact, std::span<const Vec3d> x) {
                          ") m; move it out, or give the body a cavity");
 }
 
+std::string unit_hint_of(const ContactMesh& contact, int part, std::span<const Vec3d> x) {
+  Box box;
+  for (int p = 0; p < contact.point_count(); ++p)
+    if (contact.part[p] == part) box.add(x[p]);
+  const std::string hint = unit_hint(box);
+  return hint.empty() ? "" : "; its " + hint;
+}
+
 // Rejects vertices behind a plane, or on it.
 void require_before_planes(const Model& model, std::span<const Vec3d> x) {
   const ContactMesh& contact = model.contact->mesh();
@@ -117,7 +126,7 @@ void require_before_planes(const Model& model, std::span<const Vec3d> x) {
       throw InvalidInput(is_touching
                              ? body + " touches the plane " + floor + " at the start, at " + vertex + "; leave a gap"
                              : body + " starts behind the plane " + floor + ": " + vertex + " by " +
-                                   three_digits(-height) + " m; move it");
+                                   three_digits(-height) + " m; move it" + unit_hint_of(contact, contact.part[p], x));
     }
 }
 

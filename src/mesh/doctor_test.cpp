@@ -183,7 +183,7 @@ TEST(DoctorOfTets, RejectsCoordinatesWithOverflowingPowers) {
 
 TEST(DoctorOfTets, NotesSuspiciousUnits) {
   EXPECT_THAT(found(make_sphere(81, 20), "suspicious_units").message,
-              "extent 162 m; if the file is in millimeters use scale = 0.001");
+              "extent 162 m; if the file is in millimeters use scale = 0.001, in centimeters 0.01: 0.162 m or 1.62 m");
   EXPECT_EQ(found(make_sphere(1e-4, 5e-5), "suspicious_units").severity, Severity::note);
 }
 

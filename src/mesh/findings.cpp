@@ -98,20 +98,26 @@ bool examine_vertices(const std::vector<Vec3d>& vertices, const std::vector<Elem
 template bool examine_vertices(const std::vector<Vec3d>&, const std::vector<Tet>&, const std::string&, Findings&);
 template bool examine_vertices(const std::vector<Vec3d>&, const std::vector<Triangle>&, const std::string&, Findings&);
 
-void examine_units(const std::vector<Vec3d>& vertices, Findings& findings) {
-  constexpr double kLargest = 50, kSmallest = 1e-3;  // [m] usual range of soft bodies
-  Box box;
-  for (const Vec3d& x : vertices) box.add(x);
+std::string unit_hint(const Box& box) {
+  constexpr double kLargest = 50, kSmallest = 1e-3, kLargestInCentimeters = 1000;  // [m] usual range of soft bodies
   double extent = 0;
   for (int axis = 0; axis < 3; ++axis) extent = std::max(extent, box.upper[axis] - box.lower[axis]);
-  if (extent > kLargest)
-    findings.add_general({Severity::note, "suspicious_units",
-                          "extent " + three_digits(extent) + " m; if the file is in millimeters use scale = 0.001",
-                          "set scale in the scene if the file is not in meters"});
-  if (extent < kSmallest)
-    findings.add_general({Severity::note, "suspicious_units",
-                          "extent " + three_digits(extent) + " m; if the file is in kilometers use scale = 1000",
-                          "set scale in the scene if the file is not in meters"});
+  const std::string begin = "extent " + three_digits(extent) + " m; if the file is in ";
+  if (extent < kSmallest) return begin + "kilometers use scale = 1000";
+  if (!(extent > kLargest)) return "";
+  return begin + "millimeters use scale = 0.001" +
+         (extent < kLargestInCentimeters
+              ? ", in centimeters 0.01: " + three_digits(0.001 * extent) + " m or " + three_digits(0.01 * extent) + " m"
+              : "");
+}
+
+void examine_units(const std::vector<Vec3d>& vertices, Findings& findings) {
+  Box box;
+  for (const Vec3d& x : vertices) box.add(x);
+  const std::string hint = unit_hint(box);
+  if (!hint.empty())
+    findings.add_general(
+        {Severity::note, "suspicious_units", hint, "set scale in the scene if the file is not in meters"});
 }
 
 namespace {

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "mesh/box.h"
 #include "mesh/doctor.h"
 
 namespace aspic {
@@ -29,6 +30,8 @@ template <class Element>
 bool examine_vertices(const std::vector<Vec3d>& vertices, const std::vector<Element>& elements, const std::string& noun,
                       Findings& findings);
 
+// "extent 70 m; if ... use scale = ..." for extents that are rare in meters, otherwise empty.
+std::string unit_hint(const Box& box);
 void examine_units(const std::vector<Vec3d>& vertices, Findings& findings);
 void examine_components(const TetMesh& mesh, Findings& findings);
 void examine_components(const TriMesh& mesh, Findings& findings);
