@@ -109,6 +109,18 @@ void flush_directory_of(const fs::path& file) {
   if (descriptor >= 0) ::fsync(descriptor);
 }
 
+// " (did you mean 'bunny.mesh'?)", or nothing.
+std::string near_name(const fs::path& path) {
+  std::vector<std::string> names;
+  std::error_code error;
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  if (fs::exists(path, error)) return "";
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    names.push_back(entry->path().filename().string());
+  const std::string nearest = nearest_name(path.filename().string(), names);
+  return nearest.empty() ? "" : " (did you mean '" + nearest + "'?)";
+}
+
 }  // namespace
 
 void write_file(const fs::path& path, std::string_view contents) {
@@ -123,7 +135,8 @@ void write_file(const fs::path& path, std::string_view contents) {
 
 std::string read_file(const fs::path& path) {
   const Descriptor descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-  if (descriptor < 0) fail(path, "cannot be read", errno, "check the name and the permissions");
+  if (const int error = errno; descriptor < 0)
+    fail(path, "cannot be read", error, "check the name and the permissions" + near_name(path));
   struct stat info {};
   if (::fstat(descriptor, &info) != 0) fail(path, "cannot be read", errno, "check the file system");
   if (S_ISDIR(info.st_mode)) throw InvalidInput(path.string() + ": is a folder; name a file in it");
