@@ -17,8 +17,10 @@
 #include "dynamics/mesh_error_text.h"
 #include "dynamics/step_derivatives.h"
 #include "io/mesh_file.h"
+#include "mesh/box.h"
 #include "mesh/doctor.h"
 #include "mesh/elements.h"
+#include "mesh/surface_orientation.h"
 #include "mesh/tet_nodes.h"
 #include "scene/scene.h"
 
@@ -196,7 +198,18 @@ void print_quality(const TetMesh& mesh) {
                bins[i], std::string(width, '#'));
   }
 }
-void print_quality(const TriMesh&) {}  // findings alone describe a surface
+void print_quality(const TriMesh& mesh) {
+  Box box;
+  double area = 0;
+  for (const Vec3d& x : mesh.vertices) box.add(x);
+  for (const auto& [a, b, c] : mesh.triangles)
+    area += norm(cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a])) / 2;
+  fmt::print("box: [{:g}, {:g}] x [{:g}, {:g}] x [{:g}, {:g}] m\n", box.lower[0], box.upper[0], box.lower[1],
+             box.upper[1], box.lower[2], box.upper[2]);
+  fmt::print("area: {:.6g} m^2", area);
+  if (!is_sheet(mesh)) fmt::print("; volume: {:.6g} m^3", enclosed_volume(mesh));
+  fmt::print("\n");
+}
 
 std::vector<Finding> findings_of(const TetMesh& mesh) { return diagnose(mesh); }
 // What is an error of the surface of a solid may be none of a sheet.
