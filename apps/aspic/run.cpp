@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 
@@ -17,6 +18,7 @@
 #include "base/parallel.h"
 #include "base/printable.h"
 #include "base/stop_token.h"
+#include "contact/barrier.h"
 #include "dynamics/internal_terms.h"
 #include "dynamics/mesh_error_text.h"
 #include "dynamics/state.h"
@@ -101,6 +103,8 @@ class LocalRun : public SteppedRun {
  public:
   LocalRun(const RunArguments& arguments, Scene& scene, RunDirectory& directory)
       : arguments_(arguments), scene_(scene), directory_(directory) {
+    if (const Barrier* contact = scene.simulation.model().contact; contact && scene.simulation.steps_taken() == 0)
+      for (const ContactPart& part : contact->mesh().parts) untouched_.push_back(part.is_obstacle ? part.name : "");
     if (!arguments.trace && arguments.landscapes.empty()) return;
     const LineSearchOptions& line_search = scene.simulation.options().solver.minimize.line_search;
     trace_.emplace(directory.trace_folder(scene.simulation.steps_taken()),
@@ -127,6 +131,7 @@ class LocalRun : public SteppedRun {
   Explanation record(const StepReport& report, const std::vector<Iteration>& iterations) override {
     for (const Iteration& iteration : iterations) directory_.on_iteration(report.step, iteration);
     directory_.on_step(report, scene_.simulation);
+    if (report.contacts > 0) note_touches();
     Explanation why = explain(scene_.simulation, report);
     if (arguments_.json) {
       fmt::print("{}\n", step_json(report, why, scene_.simulation));
@@ -135,12 +140,26 @@ class LocalRun : public SteppedRun {
     return why;
   }
 
+  // Names of obstacles that no body touched at the end of a step. Empty for a resumed run, whose first part is unknown.
+  std::vector<std::string> untouched() const {
+    std::vector<std::string> names = untouched_;
+    names.erase(std::remove(names.begin(), names.end(), ""), names.end());
+    return names;
+  }
+
   void finish() {
     directory_.finish(scene_.simulation);
     if (trace_) finish_trace();
   }
 
  private:
+  void note_touches() {
+    if (untouched().empty()) return;
+    const State& state = scene_.simulation.state();
+    for (const ContactStencil& stencil : *scene_.simulation.model().contact->stencils(state.q, state.time))
+      for (const int part : stencil.parts) untouched_[part].clear();
+  }
+
   // Not after --steps: the rows of a run do not depend on where it was interrupted.
   bool wants_mesh_error(const StepReport& report) const {
     if (scene_.simulation.model().mesh.tets.empty()) return false;  // of sheets there is no estimate
@@ -180,6 +199,7 @@ class LocalRun : public SteppedRun {
   Scene& scene_;
   RunDirectory& directory_;
   std::optional<Trace> trace_;
+  std::vector<std::string> untouched_;  // one per part of the contact; empty: touched, or a body
 };
 
 void print_start(std::FILE* stream, const RunArguments& arguments, const Scene& scene, const fs::path& directory) {
@@ -268,6 +288,7 @@ int run(const RunArguments& arguments) {
                    .better_scheme = better_scheme(scene.simulation),
                    .inverted = inverted_tets(scene.simulation),
                    .state_hash = scene.simulation.state_hash(),
+                   .untouched = local.untouched(),
                    .pins = pin_names(scene.simulation.model()),
                    .directory = directory.path()});
   }

@@ -100,7 +100,16 @@ double energy_of_motion(const RunTotals& totals) { return std::max(totals.most_k
 
 void print_loss(std::FILE* stream, const RunTotals& totals, const std::string& better_scheme) {
   const double share = totals.numerical_loss / energy_of_motion(totals);
-  if (totals.most_kinetic == 0 || !(share > kSignificantLoss)) return;
+  if (!(share > kSignificantLoss)) return;
+  if (totals.most_kinetic == 0) {
+    if (!(totals.driven_work > totals.numerical_loss)) return;  // a load began suddenly
+    fmt::print(
+        stream,
+        "statics    numerical_loss, {:.3g} J, is no loss: pin_work and obstacle_work take the forces at the end of "
+        "each step, so they exceed the stored energy in proportion to the step\n",
+        totals.numerical_loss);
+    return;
+  }
   const bool is_gradual = totals.gradual_loss > totals.numerical_loss / 2;
   fmt::print(stream, "loss       numerical loss {:.3g} J, {:.0f} % of the energy of motion{}\n", totals.numerical_loss,
              100 * share, is_gradual && !better_scheme.empty() ? "; " + better_scheme + " loses less" : "");
@@ -108,6 +117,8 @@ void print_loss(std::FILE* stream, const RunTotals& totals, const std::string& b
 
 void print_contact(std::FILE* stream, const RunTotals& totals, const RunEnd& end) {
   if (!end.start_warning.empty()) fmt::print(stream, "start      {}\n", end.start_warning);
+  if (!end.untouched.empty())
+    fmt::print(stream, "contact    {} touched nothing\n", printable(fmt::format("{}", fmt::join(end.untouched, ", "))));
   if (totals.gap_error == 0) return;
   fmt::print(stream, "contact    gaps of at most {:.3g} m remain between surfaces in contact", totals.gap_error);
   if (totals.contact_force_error > 0)
@@ -165,6 +176,7 @@ void RunTotals::add(const StepReport& report) {
     most_kinetic = std::max(most_kinetic, report.kinetic + std::max(report.numerical_loss, 0.0));
   most_changed = std::max(most_changed, std::abs(report.potential_total - first_potential));
   numerical_loss += report.numerical_loss;
+  driven_work += report.pin_work + report.obstacle_work;
   if (report.numerical_loss < kSuddenLoss * energy_of_motion(*this)) gradual_loss += report.numerical_loss;
   if (!worst || badness(report) > badness(*worst)) worst = report;
   if (report.status == Status::budget) {

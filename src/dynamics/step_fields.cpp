@@ -204,7 +204,10 @@ std::vector<StepField>& fields() {
       real<&R::damping_loss>({"damping_loss", "J", "energy dissipated by damping and friction"}, kMeasured),
       optional(real<&R::viscoelastic_loss>(
           {"viscoelastic_loss", "J", "share of viscoelastic branches in `damping_loss`"}, kMeasured)),
-      real<&R::numerical_loss>({"numerical_loss", "J", "energy dissipated by the integrator"}, kMeasured),
+      real<&R::numerical_loss>({"numerical_loss", "J",
+                                "energy dissipated by the integrator; in statics no loss: forces at the end of the "
+                                "step times its path minus the change of energy"},
+                               kMeasured),
       real<&R::residual_work>({"residual_work", "J", "work of the residual"}, kMeasured),
       real<&R::ledger_error>({"ledger_error", "J", "remaining imbalance"}, kMeasured),
       {"reaction", "N, N m", "resultants of pins, loads and bodies", StepFieldType::resultants, kTable},

@@ -32,7 +32,7 @@ export interface StepFields {
   nonconservative_work: MaybeNumber; // work of wind, and of pressures on open patches beyond the change of their potential [J]
   damping_loss: MaybeNumber; // energy dissipated by damping and friction [J]
   viscoelastic_loss: MaybeNumber; // share of viscoelastic branches in damping_loss [J]
-  numerical_loss: MaybeNumber; // energy dissipated by the integrator [J]
+  numerical_loss: MaybeNumber; // energy dissipated by the integrator; in statics no loss: forces at the end of the step times its path minus the change of energy [J]
   residual_work: MaybeNumber; // work of the residual [J]
   ledger_error: MaybeNumber; // remaining imbalance [J]
   decrement: MaybeNumber; // Newton decrement -g.d / 2 of the last iteration [J]
