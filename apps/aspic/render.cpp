@@ -11,6 +11,7 @@
 
 #include "aspic/commands.h"
 #include "aspic/interrupt.h"
+#include "aspic/sweep/outcome.h"
 #include "base/error.h"
 #include "base/number_chars.h"
 #include "io/atomic_file.h"
@@ -43,7 +44,7 @@ viewer::RenderOptions render_options(const RenderArguments& arguments) {
                                 .transparent = arguments.transparent,
                                 .thickness = arguments.thickness,
                                 .samples = arguments.samples > 0 ? arguments.samples
-                                           : arguments.step < 0  ? 4
+                                           : arguments.step < 0  ? 8
                                                                  : 32,
                                 .step = arguments.step};
   const char* end = arguments.size.data() + arguments.size.size();
@@ -121,14 +122,17 @@ std::unique_ptr<Output> open_output(const RenderArguments& arguments, const view
 }
 
 int render(const RenderArguments& arguments) {
+  if (!fs::is_directory(arguments.run))
+    throw InvalidInput(fmt::format("{}: is not the directory of a run", arguments.run.string()));
+  if (arguments.out.empty()) throw InvalidInput("--out is required: a folder, .mp4, .webm, .gif, or with --step .png");
   viewer::RenderOptions options = render_options(arguments);
   if (is_picture(arguments.out) && options.step < 0)
     throw InvalidInput(
         fmt::format("{}: one picture needs --step; for the whole run: -o frames/", arguments.out.string()));
   const bool is_video = viewer::VideoFile::is_video(arguments.out);
   options.every = arguments.every_frame || !is_video ? 0 : arguments.speed / arguments.fps;
-  if (!fs::is_directory(arguments.run))
-    throw InvalidInput(fmt::format("{}: is not the directory of a run", arguments.run.string()));
+  if (const int last = options.step < 0 ? 0 : count_steps(arguments.run, options.step).last; options.step > last)
+    throw InvalidInput(fmt::format("--step {}: the run has {} steps", options.step, last));
 
   const Scene scene = load_scene(scene_of_run(arguments.run));
   const viewer::RecordedRun report = viewer::make_report(arguments.run, scene, {.max_bytes = kMaxBytes});
@@ -166,7 +170,7 @@ Examples:
 
 Chromium draws them with the page of aspic view and aspic report, on the CPU if there is no graphics card.)");
   command->add_option("RUN", arguments->run, "Directory of a run")->required();
-  command->add_option("-o,--out", arguments->out, "Folder, .mp4, .webm, .gif, or with --step .png")->required();
+  command->add_option("-o,--out", arguments->out, "Folder, .mp4, .webm, .gif, or with --step .png; required");
   command->add_option("--size", arguments->size, "Width and height in pixels, 1280x720 by default");
   command->add_option(
       "--view", arguments->view,
@@ -191,7 +195,7 @@ Chromium draws them with the page of aspic view and aspic report, on the CPU if 
   command->add_flag("--transparent", arguments->transparent, "Use no background");
   command
       ->add_option("--samples", arguments->samples,
-                   "Directions of light per picture, 32 for one picture, 4 for more by default; 1: sharp shadows")
+                   "Directions of light per picture, 32 for one picture, 8 for more by default; 1: sharp shadows")
       ->check(CLI::Range(1, 256));
   command->callback([arguments, command, &action] {
     if (command->count("--wires") == 0) arguments->wires = arguments->preset.empty();
