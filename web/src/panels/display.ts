@@ -1,5 +1,6 @@
 // Folders "Mouse", "Display" and "Camera" of the settings, and their shortcuts.
 import type { GUI } from "lil-gui";
+import { sideHasBlownUp } from "../gain";
 import type { Page } from "../page";
 import type { SettingValue } from "../protocol";
 import { kCameraModes, kViewNames, type CameraMode, type ViewName } from "../view/cameras";
@@ -149,7 +150,7 @@ function addCamera(folder: Folder, display: Display, views: () => View[]): void 
   const kinds = { perspective: "no", orthographic: "yes" };
   const kind = (): string => (display.cameras.a.orthographic ? "yes" : "no");
   folder.choice("Projection", () => kinds, kind, (value) => each((rig) => rig.setOrthographic(value === "yes")));
-  folder.button("Center the body", () => views().forEach((view) => view.center()));
+  folder.button("Center the body", () => centerBodies(display, views()));
   const buttons = folder.within("Look from");
   for (const name of kViewNames) buttons.button(name, () => each((rig) => rig.setView(name)));
   folder.add("linked", "Link cameras");
@@ -175,11 +176,18 @@ function addDisplayShortcuts(page: Page, display: Display): void {
   add("]", "Larger brush", () => display.change({ brush: settings.brush * 1.25 }));
 }
 
+// Fits the bodies to their views. A camera of both sides shows none that has blown up, unless both have.
+function centerBodies(display: Display, views: View[]): void {
+  const calm = views.filter(({ store, side }) => !sideHasBlownUp(store, side));
+  const shown = display.settings.linked && calm.length > 0 ? calm : views;
+  for (const { box, rig } of shown) if (box) rig.center(box.lower, box.upper);
+}
+
 function addCameraShortcuts(page: Page, display: Display, views: () => View[]): void {
   const add = (key: string, does: string, run: () => void): void => page.shortcut({ key, does, group: "Camera", run });
   const setView = (name: ViewName): void => display.eachCamera((rig) => rig.setView(name));
   kViewNames.forEach((name, i) => add(String(i + 1), `Look from: ${name}`, () => setView(name)));
-  const center = (): void => views().forEach((view) => view.center());
+  const center = (): void => centerBodies(display, views());
   add("0", "Center the body", center);
   add(".", "Center the body", center);
   add("o", "Orthographic or perspective", () => display.eachCamera((rig) => rig.setOrthographic(!rig.orthographic)));
