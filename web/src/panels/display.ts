@@ -25,13 +25,14 @@ class Folder {
   }
 
   // `also`: further settings that a change by the reader implies.
-  add(key: Key, label: string, also: Partial<DisplaySettings> = {}): void {
+  add(key: Key, label: string, also: Partial<DisplaySettings> = {}): HTMLElement {
     const { settings } = this.display;
     const choices = kChoices[key as keyof typeof kChoices];
     const isColor = key.endsWith("Color") || key === "background";
     const controller = isColor ? this.gui.addColor(settings, key) : this.gui.add(settings, key, choices);
     controller.name(label).onChange((value: unknown) => this.display.change({ ...also, [key]: value }));
     this.display.on("changed", () => controller.updateDisplay());
+    return controller.domElement;
   }
 
   slider(key: Amount, label: string, least: number, most: number, step: number): void {
@@ -85,9 +86,8 @@ function addDisplay(folder: Folder, display: Display, views: () => View[]): void
   addField(folder, display, views);
   folder.add("wires", "Wires");
   folder.add("fill", "Fill");
-  folder.add("thickness", "Thickness of sheets");
-  folder.add("obstacles", "Obstacles");
-  folder.add("contacts", "Contact points");
+  const rows = [folder.add("thickness", "Thickness of sheets"), folder.add("obstacles", "Obstacles"), folder.add("contacts", "Contact points")];
+  for (const row of rows) row.classList.add("of-simulations");
   folder.add("shadows", "Shadows");
   folder.add("clip", "Cut");
   folder.slider("clipAt", "Cut at", 0, 1, 0.001);
