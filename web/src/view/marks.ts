@@ -79,7 +79,10 @@ export function spring(ink: Ink, lens: Lens, point: Vec3, target: Vec3, force: V
   }
   dot(ink, from, 4, ink.accent);
   const newtons = force ? Math.hypot(...force) : NaN;
-  if (Number.isFinite(newtons)) text(ink, valueText(newtons, "N", 3), to[0] + ink.em, to[1] - ink.em);
+  if (!Number.isFinite(newtons)) return;
+  const words = valueText(newtons, "N", 3);
+  const fits = to[0] + ink.em + ink.context.measureText(words).width < lens.width;
+  text(ink, words, to[0] + (fits ? ink.em : -ink.em), to[1] - ink.em, fits ? "left" : "right");
 }
 
 export function ring(ink: Ink, [x, y]: Point, radius: number, words: string): void {

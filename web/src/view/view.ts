@@ -278,6 +278,6 @@ export class View {
     const other = this.side === "a" ? "b" : "a";
     if (!this.display.settings.linked || !this.store.side(other) || sideHasBlownUp(this.store, other)) return `${what}. Press 0 to see it.`;
     const away = this.box ? Math.hypot(...[0, 1, 2].map((c) => (this.box!.lower[c]! + this.box!.upper[c]!) / 2 - this.rig.target.getComponent(c))) : NaN;
-    return `${what}, and is ${valueText(away, "m", 2)} away. 0 shows side ${other.toUpperCase()}.`;
+    return `${what}, and is ${valueText(away, "m", 2)} away. Press 0 to see side ${other.toUpperCase()}.`;
   }
 }
