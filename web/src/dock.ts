@@ -7,6 +7,7 @@ import { keyName } from "./shortcuts";
 
 const kKeys: Record<string, string> = { energy: "e", microscope: "m", landscape: "a", functions: "f", certificate: "q", bench: "k" };
 const kSmallest = 120; // smallest height [px]
+const kLow = 600; // windows below this height open without plots [px]
 const kShare = 0.62; // largest part of the window's height; the mesh keeps the rest
 
 export class Dock {
@@ -46,7 +47,7 @@ export class Dock {
       restore: (saved) => this.restore(saved),
     });
     this.show(panels[0] ?? null);
-    whenNarrow(isClosed, (narrow) => this.show(narrow ? null : this.last));
+    whenNarrow(isClosed || innerHeight < kLow, (narrow) => this.show(narrow ? null : this.last));
   }
 
   // Adds a panel after the construction.

@@ -1,6 +1,7 @@
 // Detects from the energy that a motion has blown up: the integrator and the solver's residuals have added more than
 // half of the kinetic energy. A body in free fall does not do that, however far it moves.
-import type { StepRow } from "./protocol";
+import type { SideName, StepRow } from "./protocol";
+import type { Store } from "./store";
 
 const kShare = 0.5; // threshold relative to the kinetic energy
 
@@ -14,4 +15,8 @@ export function hasBlownUp(rows: readonly StepRow[], step: number): boolean {
     gained += (row.residual_work ?? NaN) - (row.numerical_loss ?? NaN);
   }
   return last !== null && !(gained <= kShare * (last.kinetic ?? NaN));
+}
+
+export function sideHasBlownUp(store: Store, side: SideName): boolean {
+  return hasBlownUp(store.side(side)?.steps ?? [], store.state?.[side]?.step ?? 0);
 }

@@ -28,13 +28,14 @@ export class Judge {
   readonly root = element("div", { class: "judgment" });
   private running: Judging | null = null;
 
-  // Offers to judge the lesson; nothing in a page without an engine.
+  // Offers to judge the lesson; a page without an engine names the command that does.
   show(lesson: string): void {
     this.running?.stop();
     this.running = null;
     const title = "Runs the computation of aspic lecture in this page and compares its numbers with their bounds";
     const start = button({ text: "Check this page's claim", title }, () => void this.run(lesson));
-    this.root.replaceChildren(...(hasEngine() ? [start] : []));
+    const command = `aspic lecture ${Number.parseInt(lesson, 10)}`;
+    this.root.replaceChildren(hasEngine() ? start : element("p", { class: "faint" }, "Check this page's claim: ", element("code", {}, command)));
   }
 
   private async run(lesson: string): Promise<void> {

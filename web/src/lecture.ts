@@ -184,6 +184,7 @@ export class Lecture {
     this.list.querySelector("[aria-current]")?.scrollIntoView({ block: "nearest" });
     this.root.scrollTo(0, 0);
     document.scrollingElement?.scrollTo(0, 0); // on a phone the whole page scrolls; show the view first
+    this.page.emit("lesson", undefined);
     this.page.emit("panel", lesson.panel);
     this.page.emit("scale", lesson.log ? "log" : "linear");
     if (lesson.function) this.showFunction(lesson.function);

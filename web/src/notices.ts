@@ -19,7 +19,7 @@ export function connectionText(failures: number): string {
 export function showNotices(root: HTMLElement, store: Store, page: Page): void {
   const lasting = element("div", { class: "lasting" });
   const list = element("div", { class: "notices" });
-  root.append(lasting, list);
+  root.append(element("div", { class: "over-views" }, lasting, list));
 
   const show = (text: string, kind: "info" | "error"): void => {
     const same = [...list.children].find((child) => child.firstChild?.textContent === text);

@@ -18,6 +18,7 @@ export interface ChosenIteration {
 interface Events {
   chosen: ChosenIteration; // iteration in the microscope
   highlight: Highlight[]; // highlights on the body of side a
+  lesson: void; // a page of the lecture has opened
   panel: Panel["name"]; // the panel to open in the dock
   scale: "linear" | "log"; // of the energies
   notice: { text: string; kind: "info" | "error" };

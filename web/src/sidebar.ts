@@ -6,6 +6,7 @@ import { fieldsOf, type Page } from "./page";
 import { shortcutButton } from "./shortcuts";
 
 const kNarrowest = 160; // smallest width [px]
+const kBesideLecture = 1400; // least width of a window for both [px]
 const kShare = 0.5; // largest part of the window's width
 
 export class Sidebar {
@@ -28,6 +29,7 @@ export class Sidebar {
     const shortcut = { key: "g", does: "Settings", group: "Panels", run: () => this.hide(!root.hidden) } as const;
     this.opener = shortcutButton(page, shortcut, { text: "Settings" });
     whenNarrow(isClosed, (narrow) => this.hide(narrow));
+    page.on("lesson", () => innerWidth < kBesideLecture && this.hide(true));
     page.keep("settings", {
       save: () => ({ hidden: root.hidden, width: root.offsetWidth }),
       restore: (saved) => this.restore(saved),

@@ -4,7 +4,7 @@ import { test } from "node:test";
 import { nameOfA } from "../src/presets";
 import type { Scene, Setting } from "../src/protocol";
 import type { Side } from "../src/store";
-import { differenceOf } from "../src/view/difference";
+import { differenceOf, largestShown } from "../src/view/difference";
 
 const side = (time: number, ...x: number[]): Side =>
   ({ geometry: { triangles: Uint32Array.of(0, 1, 2) }, picture: { time, positions: Float32Array.from(x) } }) as unknown as Side;
@@ -12,6 +12,12 @@ const side = (time: number, ...x: number[]): Side =>
 test("sides at one time have a distance per vertex", () => {
   const [a, b] = [side(1, 0, 0, 0, 1, 1, 1), side(1, 3, 4, 0, 1, 1, 1)];
   assert.deepEqual([...differenceOf(a, b)!], [5, 0]);
+});
+
+test("a side that has blown up does not set the range of the colors", () => {
+  const scene = { lower: [0, 0, 0], upper: [3, 4, 0] } as unknown as Scene;
+  assert.equal(largestShown(Float32Array.of(0, 7), scene), 7);
+  assert.equal(largestShown(Float32Array.of(0, 2.5e13), scene), 50);
 });
 
 test("other times keep the distance, other surfaces have none", () => {

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { energyFormula } from "../src/exercises/cases";
-import { difference } from "../src/exercises/check";
+import { callText, difference } from "../src/exercises/check";
 import { exercises } from "../src/exercises/exercises";
 import { keepProgress, progressFile, progressOf } from "../src/exercises/progress";
 import { lineOf } from "../src/exercises/run";
@@ -38,6 +38,11 @@ test("the first wrong entry is named", () => {
   assert.match(difference(null, 3)!, /is a return missing\?, expected: 3/);
   assert.match(difference("NaN", 3)!, /is NaN, expected: 3/);
   assert.match(difference({ x: 1 }, [1])!, /expected: a list of 1/);
+});
+
+test("a wrong result names all values", () => {
+  const text = callText("E", [[0.9, -0.7], { h: 0.1, m: [0.5] }, "rosenbrock"]);
+  assert.equal(text, "E([0.9, -0.7], { h: 0.1, m: [0.5] }, rosenbrock)");
 });
 
 test("the line of an error is that of the reader's code", () => {

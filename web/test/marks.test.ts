@@ -1,7 +1,7 @@
 // Texts over the view: they neither overlap nor leave a narrow view. Labels of axes with huge ranges.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { ranged } from "../src/plots/axes";
+import { powersOfTen, ranged } from "../src/plots/axes";
 import type { StepRow } from "../src/protocol";
 import type { Lens } from "../src/view/lens";
 import { bodyLegend, contactLegend, type Ink } from "../src/view/marks";
@@ -46,4 +46,12 @@ test("legends keep apart in views of any width", () => {
 
 test("a range up to the largest numbers is finite", () => {
   assert.deepEqual(ranged(2, 9e307, true), [1, 1e308]);
+});
+
+test("a logarithmic axis has ticks for any range", () => {
+  for (const [low, high] of [[1e-5, 1e82], [1e-308, 1e308], [0.1, 10], [3e20, 2e22]] as const) {
+    const ticks = powersOfTen(low, high, 8);
+    assert.ok(ticks.length >= 2 && ticks.length <= 9, `${low} ${high}: ${ticks}`);
+    assert.ok(ticks.every((tick) => tick >= low * (1 - 1e-9) && tick <= high * (1 + 1e-9)));
+  }
 });

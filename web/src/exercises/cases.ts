@@ -87,7 +87,7 @@ export const stepCases = (runs: [string, [number, number], number, number, numbe
     }),
   );
   const stuck = { alphaMax: 1, c: 1e-4, p: 0.5, tol: 0.01 };
-  return [...cases, { at: "rosenbrock, x = (−1.2, 1), tol = 0.01", arguments: ["rosenbrock", [-1.2, 1], [215.6, 88], stuck], expected: 0, source: "the rule: stuck" }];
+  return [...cases, { at: "rosenbrock, x = (−1.2, 1), tol = 0.01", arguments: ["rosenbrock", [-1.2, 1], [215.6, 88], stuck], expected: 0, source: "the rule that a stuck search returns 0" }];
 };
 
 const kTets = 6;
@@ -105,7 +105,7 @@ export async function densityCases(store: Store): Promise<Case[]> {
     const la = (young! * poisson!) / ((1 + poisson!) * (1 - 2 * poisson!));
     return { at: `Tet ${tet} of the body, F = ${F.map(point).join(" ")}`, arguments: [F, mu, la], expected: energy_density!, source: kEngine };
   });
-  const turned = { at: "A rotation by 90 degrees", arguments: [[[0, -1, 0], [1, 0, 0], [0, 0, 1]], 1, 2], expected: 0, source: "the rule: a rotation stores no energy" };
+  const turned = { at: "A rotation by 90 degrees", arguments: [[[0, -1, 0], [1, 0, 0], [0, 0, 1]], 1, 2], expected: 0, source: "the rule that a rotation stores no energy" };
   return [...cases, turned];
 }
 

@@ -14,6 +14,7 @@ export interface Case {
 export interface Verdict {
   passed: boolean;
   text: string;
+  isTry?: boolean; // the code ran
 }
 
 const kTolerance = 1e-6; // relative to the largest expected entry
@@ -44,12 +45,22 @@ export function difference(found: unknown, expected: Value): string | null {
   return compare(found, expected, "your result");
 }
 
+// A call as a reader would write it, with all values.
+export function callText(name: string, values: unknown[]): string {
+  const literal = (value: unknown): string => {
+    if (Array.isArray(value)) return `[${value.map(literal).join(", ")}]`;
+    if (typeof value !== "object" || value === null) return String(value);
+    return `{ ${Object.entries(value).map(([key, entry]) => `${key}: ${literal(entry)}`).join(", ")} }`;
+  };
+  return `${name}(${values.map(literal).join(", ")})`;
+}
+
 export async function check(code: string, name: string, cases: Case[]): Promise<Verdict> {
-  const { results, failure } = await runCode(code, name, cases.map((each) => each.arguments));
-  if (failure !== null) return { passed: false, text: failure };
-  for (const [i, { at, expected, source }] of cases.entries()) {
+  const { results, failure, ran } = await runCode(code, name, cases.map((each) => each.arguments));
+  if (failure !== null) return { passed: false, text: failure, isTry: ran };
+  for (const [i, { at, arguments: values, expected, source }] of cases.entries()) {
     const wrong = difference(results[i], expected);
-    if (wrong !== null) return { passed: false, text: `${at}: ${wrong} (${source}).` };
+    if (wrong !== null) return { passed: false, text: `${at}: ${wrong} (${source}).\nThe call: ${callText(name, values)}`, isTry: true };
   }
-  return { passed: true, text: `Correct: ${cases.length} results agree with ${[...new Set(cases.map(({ source }) => source))].join(" and ")}.` };
+  return { passed: true, text: `Correct: ${cases.length} results agree with ${[...new Set(cases.map(({ source }) => source))].join(" and ")}.`, isTry: true };
 }

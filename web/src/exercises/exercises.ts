@@ -17,7 +17,7 @@ export interface Exercise {
 }
 
 const kChain =
-  "A chain of masses hangs in the plane: a spring of length L joins mass 0 to the origin, and each further mass to the one before. q = [x0, y0, x1, y1, ...]; predicted is q~.";
+  "A chain of masses hangs in the plane: a spring of length L joins mass 0 to the origin, and each further mass to the one before. q = [x0, y0, x1, y1, ...]; predicted is q~. m has one entry per mass, M one per coordinate: M = diag(m0, m0, m1, m1, ...).";
 const kFunction = "f has f.value(x), f.gradient(x) and f.hessian(x) for x = [x0, x1].";
 
 export const exercises: Exercise[] = [

@@ -89,7 +89,7 @@ export class ExercisePanel {
       const cases = await exercise.cases(this.store);
       const verdict = await check(code, exercise.entry, cases);
       const before = progressOf(exercise); // with what was written meanwhile
-      keepProgress(exercise, { ...before, passed: before.passed || verdict.passed, tries: before.tries + 1 });
+      keepProgress(exercise, { ...before, passed: before.passed || verdict.passed, tries: before.tries + (verdict.isTry ? 1 : 0) });
       return verdict;
     } catch (reason) {
       return { passed: false, text: casesError(reason) };

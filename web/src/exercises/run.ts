@@ -6,6 +6,7 @@ const kTimeLimit = 5000; // [ms]
 export interface Run {
   results: unknown[]; // of the calls; numbers that are not finite as text: "NaN"
   failure: string | null; // names the line; then there are no results
+  ran: boolean; // not for syntax errors and endless loops
 }
 
 // Calls the function for each list of arguments. A text among them names a planar function of the engine. The worker's
@@ -49,9 +50,11 @@ export function lineOf(stack: string, lines: number): number | null {
   return places.find((line) => line <= lines) ?? null;
 }
 
+const kOutside = "A return outside a function. Keep the line that begins the function and its last brace; Start again restores them.";
+
 // An unclosed bracket is noticed below the code.
 function failureOf(message: string, line: number | null, lines: number): string {
-  const text = message.replace(/^Uncaught /, "");
+  const text = /illegal return|return not in function|return outside/i.test(message) ? kOutside : message.replace(/^Uncaught /, "");
   if (line === null) return text;
   return line > lines ? `${text}. Is a bracket, a text or a comment not closed?` : `Line ${line}: ${text}`;
 }
@@ -60,14 +63,14 @@ export function runCode(code: string, name: string, calls: unknown[][]): Promise
   const lines = code.split("\n").length;
   const worker = startWorker<unknown[][]>(`${code}\n;(${serve.toString()})("${name}", typeof ${name} === "undefined" ? undefined : ${name});`);
   const answer = new Promise<Run>((resolve) => {
-    const fail = (failure: string): void => resolve({ results: [], failure });
+    const fail = (failure: string, ran = false): void => resolve({ results: [], failure, ran });
     setTimeout(() => fail(`Stopped after ${kTimeLimit / 1000} s: does a loop never end?`), kTimeLimit);
     worker.onmessage = (data) => {
       if (typeof data !== "string" || !/^{"(results|kind)"/.test(data)) return; // posted by the code itself
       const { kind, why, line, results, error, stack } = JSON.parse(data);
       if (kind === "ended") fail(failureOf(why, line, lines));
-      else if (error !== undefined) fail(failureOf(error, lineOf(stack, lines), lines));
-      else resolve({ results, failure: null });
+      else if (error !== undefined) fail(failureOf(error, lineOf(stack, lines), lines), true);
+      else resolve({ results, failure: null, ran: true });
     };
     worker.send(calls, false);
   });

@@ -1,5 +1,6 @@
 // Folders "Mouse", "Display" and "Camera" of the settings, and their shortcuts.
 import type { GUI } from "lil-gui";
+import { sideHasBlownUp } from "../gain";
 import type { Page } from "../page";
 import type { SettingValue } from "../protocol";
 import { kCameraModes, kViewNames, type CameraMode, type ViewName } from "../view/cameras";
@@ -24,13 +25,14 @@ class Folder {
   }
 
   // `also`: further settings that a change by the reader implies.
-  add(key: Key, label: string, also: Partial<DisplaySettings> = {}): void {
+  add(key: Key, label: string, also: Partial<DisplaySettings> = {}): HTMLElement {
     const { settings } = this.display;
     const choices = kChoices[key as keyof typeof kChoices];
     const isColor = key.endsWith("Color") || key === "background";
     const controller = isColor ? this.gui.addColor(settings, key) : this.gui.add(settings, key, choices);
     controller.name(label).onChange((value: unknown) => this.display.change({ ...also, [key]: value }));
     this.display.on("changed", () => controller.updateDisplay());
+    return controller.domElement;
   }
 
   slider(key: Amount, label: string, least: number, most: number, step: number): void {
@@ -84,9 +86,8 @@ function addDisplay(folder: Folder, display: Display, views: () => View[]): void
   addField(folder, display, views);
   folder.add("wires", "Wires");
   folder.add("fill", "Fill");
-  folder.add("thickness", "Thickness of sheets");
-  folder.add("obstacles", "Obstacles");
-  folder.add("contacts", "Contact points");
+  const rows = [folder.add("thickness", "Thickness of sheets"), folder.add("obstacles", "Obstacles"), folder.add("contacts", "Contact points")];
+  for (const row of rows) row.classList.add("of-simulations");
   folder.add("shadows", "Shadows");
   folder.add("clip", "Cut");
   folder.slider("clipAt", "Cut at", 0, 1, 0.001);
@@ -149,7 +150,7 @@ function addCamera(folder: Folder, display: Display, views: () => View[]): void 
   const kinds = { perspective: "no", orthographic: "yes" };
   const kind = (): string => (display.cameras.a.orthographic ? "yes" : "no");
   folder.choice("Projection", () => kinds, kind, (value) => each((rig) => rig.setOrthographic(value === "yes")));
-  folder.button("Center the body", () => views().forEach((view) => view.center()));
+  folder.button("Center the body", () => centerBodies(display, views()));
   const buttons = folder.within("Look from");
   for (const name of kViewNames) buttons.button(name, () => each((rig) => rig.setView(name)));
   folder.add("linked", "Link cameras");
@@ -175,11 +176,18 @@ function addDisplayShortcuts(page: Page, display: Display): void {
   add("]", "Larger brush", () => display.change({ brush: settings.brush * 1.25 }));
 }
 
+// Fits the bodies to their views. A camera of both sides shows none that has blown up, unless both have.
+function centerBodies(display: Display, views: View[]): void {
+  const calm = views.filter(({ store, side }) => !sideHasBlownUp(store, side));
+  const shown = display.settings.linked && calm.length > 0 ? calm : views;
+  for (const { box, rig } of shown) if (box) rig.center(box.lower, box.upper);
+}
+
 function addCameraShortcuts(page: Page, display: Display, views: () => View[]): void {
   const add = (key: string, does: string, run: () => void): void => page.shortcut({ key, does, group: "Camera", run });
   const setView = (name: ViewName): void => display.eachCamera((rig) => rig.setView(name));
   kViewNames.forEach((name, i) => add(String(i + 1), `Look from: ${name}`, () => setView(name)));
-  const center = (): void => views().forEach((view) => view.center());
+  const center = (): void => centerBodies(display, views());
   add("0", "Center the body", center);
   add(".", "Center the body", center);
   add("o", "Orthographic or perspective", () => display.eachCamera((rig) => rig.setOrthographic(!rig.orthographic)));

@@ -9,6 +9,8 @@ export interface Axis {
   integer?: boolean;
 }
 
+const kWholeSteps = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000, 50000, 100000, 1e6, 1e7];
+
 export function axis(options: Axis & { log?: boolean }, colors: Palette, vertical: boolean): uPlot.Axis {
   const measure = document.createElement("canvas").getContext("2d")!;
   measure.font = colors.font;
@@ -22,7 +24,7 @@ export function axis(options: Axis & { log?: boolean }, colors: Palette, vertica
     font: colors.font,
     labelFont: colors.font,
     grid: { stroke: colors.line, width: 1 },
-    splits: options.log === true ? (u) => powersOfTen(u, colors.fontSize) : undefined,
+    splits: options.log === true ? ({ scales, over }) => powersOfTen(scales.y!.min!, scales.y!.max!, over.clientHeight / (2 * colors.fontSize)) : undefined,
     filter: (_u, splits) => splits,
     ticks: { stroke: colors.line, width: 1, size: 4 },
     gap: 3,
@@ -31,10 +33,8 @@ export function axis(options: Axis & { log?: boolean }, colors: Palette, vertica
     labelSize: colors.fontSize * 1.35,
     labelGap: 0,
     space: vertical ? colors.fontSize * 2.2 : colors.fontSize * 5,
-    incrs:
-      options.integer === true
-        ? [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000, 50000, 100000, 1e6, 1e7]
-        : undefined,
+    // uPlot omits all ticks where it finds no step among these, though `splits` needs none.
+    incrs: options.log === true ? [Number.MAX_VALUE] : options.integer === true ? kWholeSteps : undefined,
     size: (_u, values) =>
       vertical
         ? Math.max(...(values ?? []).map((v) => measure.measureText(v ?? "").width), colors.fontSize) + 10
@@ -43,13 +43,11 @@ export function axis(options: Axis & { log?: boolean }, colors: Palette, vertica
   };
 }
 
-// Powers of ten, as many as have room for their texts.
-function powersOfTen(u: uPlot, fontSize: number): number[] {
-  const { min, max } = u.scales.y!;
-  if (!(min! > 0) || !(max! > 0)) return [];
-  const [first, last] = [Math.ceil(Math.log10(min!) - 1e-9), Math.floor(Math.log10(max!) + 1e-9)];
-  const room = Math.max(1, u.over.clientHeight / (2 * fontSize));
-  const stride = Math.max(1, Math.ceil((last - first) / room));
+// Powers of ten, at most about `room` of them.
+export function powersOfTen(min: number, max: number, room: number): number[] {
+  if (!(min > 0) || !(max > 0)) return [];
+  const [first, last] = [Math.ceil(Math.log10(min) - 1e-9), Math.floor(Math.log10(max) + 1e-9)];
+  const stride = Math.max(1, Math.ceil((last - first) / Math.max(1, room)));
   const out: number[] = [];
   for (let exponent = last; exponent >= first; exponent -= stride) out.unshift(10 ** exponent);
   return out;

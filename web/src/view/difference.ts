@@ -1,6 +1,7 @@
 // The distance between the sides of a comparison as a field, where both show the same surface.
-import type { Field } from "../protocol";
+import type { Field, Scene } from "../protocol";
 import type { Side } from "../store";
+import { extremes } from "./ranges";
 
 export const kDifference: Field = { name: "difference", label: "distance between A and B", unit: "m", diverging: false, center: 0, log: false };
 
@@ -19,4 +20,12 @@ export function differenceOf(a: Compared, b: Compared): Float32Array | null | un
     distances[v] = Math.hypot(x!, y!, z!);
   }
   return distances;
+}
+
+const kFarthest = 10; // sizes of the scene
+
+// Upper end of the colors: a side that has blown up does not turn the other one black.
+export function largestShown(distances: Float32Array, { lower, upper }: Pick<Scene, "lower" | "upper">): number {
+  const size = Math.hypot(...upper.map((high, c) => high - lower[c]!));
+  return Math.min(extremes(distances)?.[1] ?? 0, kFarthest * size);
 }

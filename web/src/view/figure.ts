@@ -4,11 +4,11 @@ import type { Side, Store } from "../store";
 import { bodyColors } from "./bodies";
 import { Body } from "./body";
 import { largestPressure } from "./contacts";
-import { differenceOf, kDifference } from "./difference";
+import { differenceOf, kDifference, largestShown } from "./difference";
 import type { Display } from "./display";
 import type { Style } from "./overlay";
 import type { Surface } from "./picking";
-import { extremes, RunningRange, type ColorRange } from "./ranges";
+import { RunningRange, type ColorRange } from "./ranges";
 import type { Stage } from "./stage";
 import { halfThickness, ThickSheets } from "./thickSheets";
 
@@ -88,7 +88,7 @@ export class Figure {
     const isShown = this.display.settings.difference && this.side?.scene.field === "";
     const now = isShown ? differenceOf(a, b) : null;
     if (now === undefined || !this.body) return;
-    const largest = now ? (extremes(now)?.[1] ?? 0) : 0;
+    const largest = now && this.side ? largestShown(now, this.side.scene) : 0;
     this.difference = largest > 0 ? now : null; // equal sides keep the color of the body
     if (!this.difference) return;
     this.body.showValues(this.difference);

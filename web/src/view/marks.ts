@@ -79,7 +79,10 @@ export function spring(ink: Ink, lens: Lens, point: Vec3, target: Vec3, force: V
   }
   dot(ink, from, 4, ink.accent);
   const newtons = force ? Math.hypot(...force) : NaN;
-  if (Number.isFinite(newtons)) text(ink, valueText(newtons, "N", 3), to[0] + ink.em, to[1] - ink.em);
+  if (!Number.isFinite(newtons)) return;
+  const words = valueText(newtons, "N", 3);
+  const fits = to[0] + ink.em + ink.context.measureText(words).width < lens.width;
+  text(ink, words, to[0] + (fits ? ink.em : -ink.em), to[1] - ink.em, fits ? "left" : "right");
 }
 
 export function ring(ink: Ink, [x, y]: Point, radius: number, words: string): void {
@@ -180,8 +183,12 @@ export function colorBar(ink: Ink, lens: Pick<Lens, "width" | "height">, field: 
   const [left, top, width] = [right - 1.1 * em, (1.25 * lines.length + 1.2) * em, 1.1 * em];
   const height = Math.min(16 * em, lens.height - top - 1.2 * em);
   if (height < 3 * em) return;
-  const values = range.log ? logTicks(range.low, range.high) : ticks(range.low, range.high, height / (2.6 * em));
-  const words = range.log || values.length < 2 ? values.map((value) => short(value)) : tickTexts(values);
+  let values = range.log ? logTicks(range.low, range.high) : ticks(range.low, range.high, height / (2.6 * em));
+  let words = range.log || values.length < 2 ? values.map((value) => short(value)) : tickTexts(values);
+  // The ends, where no tick is near.
+  const place = (value: number): number => top + height * (1 - fraction(range, value));
+  for (const end of range.high > range.low ? [range.low, range.high] : [])
+    if (values.every((value) => Math.abs(place(value) - place(end)) > 1.2 * em)) [values, words] = [[...values, end], [...words, short(end, 3)]];
   const { context } = ink;
   context.fillStyle = range.high > range.low ? gradient(context, map, [0, top + height], [0, top]) : `rgb(${colorAt(map, 0.5).join()})`;
   context.fillRect(left, top, width, height);
@@ -189,7 +196,7 @@ export function colorBar(ink: Ink, lens: Pick<Lens, "width" | "height">, field: 
   context.strokeStyle = ink.text;
   context.strokeRect(left - 0.5, top - 0.5, width + 1, height + 1);
   values.forEach((value, i) => {
-    const y = top + height * (1 - fraction(range, value));
+    const y = place(value);
     ink.context.fillStyle = ink.text;
     ink.context.fillRect(left - 0.35 * em, y - 0.5, 0.35 * em, 1);
     text(ink, words[i], left - 0.6 * em, y, "right");

@@ -1,10 +1,11 @@
 // 3-D view of one side: draws its newest picture, and only after a change.
 import "./view.css";
 import type { Highlight, Page } from "../page";
-import { hasBlownUp } from "../gain";
+import { sideHasBlownUp } from "../gain";
 import type { SideName } from "../protocol";
 import type { Store } from "../store";
 import { onLook } from "../theme";
+import type { Box } from "./body";
 import type { CameraRig } from "./cameras";
 import { Card } from "./card";
 import type { Display } from "./display";
@@ -82,9 +83,9 @@ export class View {
     this.drawNow();
   }
 
-  // Fits the present body to the view.
-  center(): void {
-    if (this.figure.body?.box) this.rig.center(this.figure.body.box.lower, this.figure.body.box.upper);
+  // Box around the present body.
+  get box(): Box | null {
+    return this.figure.body?.box ?? null;
   }
 
   // Shows the values at a clicked point.
@@ -272,9 +273,11 @@ export class View {
 
   // Describes where the body is if it is out of sight.
   private whereItIs(): string {
-    const step = this.store.state?.[this.side]?.step ?? 0;
-    const blewUp = hasBlownUp(this.figure.side?.steps ?? [], step);
-    const what = blewUp ? "The motion has blown up: it has gained energy" : "The body has left the view";
-    return `${what}. Press 0 to see it.`;
+    if (!sideHasBlownUp(this.store, this.side)) return "The body has left the view. Press 0 to see it.";
+    const what = "The motion has blown up: it has gained energy";
+    const other = this.side === "a" ? "b" : "a";
+    if (!this.display.settings.linked || !this.store.side(other) || sideHasBlownUp(this.store, other)) return `${what}. Press 0 to see it.`;
+    const away = this.box ? Math.hypot(...[0, 1, 2].map((c) => (this.box!.lower[c]! + this.box!.upper[c]!) / 2 - this.rig.target.getComponent(c))) : NaN;
+    return `${what}, and is ${valueText(away, "m", 2)} away. Press 0 to see side ${other.toUpperCase()}.`;
   }
 }
