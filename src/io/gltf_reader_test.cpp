@@ -62,7 +62,7 @@ TEST_F(GltfReading, TurnsByQuaternionsAndMatrices) {
 TEST_F(GltfReading, ReadsWhatIsWritten) {
   const std::vector<Triangle> triangles = {{0, 1, 2}, {2, 1, 3}};
   const std::vector<float> points = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0.1F};
-  const TriMesh mesh = read("a.glb", glb({"square", triangles, {points, points}, {0, 1}}));
+  const TriMesh mesh = read("a.glb", glb({.meshes = {{"square", triangles, {points, points}}}, .times = {0, 1}}));
   EXPECT_EQ(mesh.triangles, triangles);
   EXPECT_EQ(mesh.vertices[3][2], double{0.1F});
 }
