@@ -3,17 +3,10 @@
 #include <array>
 
 #include "linalg/cholesky.h"
+#include "linalg/cholesky_cost.h"
 #include "linalg/conjugate_gradient.h"
 
 namespace aspic {
-
-// Predicts the cost of a Cholesky factorization from the graph alone, in linear time and without an elimination order.
-struct CostPrediction {
-  double flops = 0;
-  double entries = 0;                            // of the factor
-  double bytes() const { return 18 * entries; }  // 8 per entry, and more for the update matrices of all subtrees
-};
-CostPrediction predict_cholesky(const BlockPattern& pattern);
 
 // Predicts the number of iterations in which conjugate gradients with block-Jacobi reduce the residual by two digits,
 // from the ratio of the stiffness of a uniform displacement to the diagonal. Time steps of soft bodies are easy,

@@ -5,17 +5,16 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
-#include "linalg/auto_solver.h"
+#include "linalg/cholesky_cost.h"
 #include "math/vectors.h"
 
 namespace aspic {
 namespace {
 
-// While the factor of the rows with stencils would have more than kLarge times the entries of H, those of weak stencils
-// are left out, first those that couple two rows by less than kWeak times the smaller diagonal. For eight layers of
-// cloth this halves the time per step, although iterations quadruple; without any correction it would be a tenth
-// longer.
-constexpr double kLarge = 1, kWeak = 0.3;
+// While the factor of the rows with stencils would have more entries than H, those of weak stencils are left out, first
+// those that couple two rows by less than kWeak times the smaller diagonal. For eight layers of cloth this halves the
+// time per step, although iterations quadruple; without any correction it would be a tenth longer.
+constexpr double kWeak = 0.3;
 
 bool is_stronger(const Stencil& stencil, double ratio, const BlockSparse& H) {
   const auto diagonal = [&](int row) { return trace(H.block[H.pattern->diagonal(row)]); };
@@ -77,8 +76,8 @@ bool RowCorrection::factorize(const BlockSparse& H) {
   A_.reset();
   collect_rows(H, [](const Stencil&) { return true; });
   pattern_ = restricted_pattern(H);
-  const double large = kLarge * 9 * static_cast<double>(H.pattern->block_count());
-  for (double ratio = kWeak; ratio < 1 && predict_cholesky(pattern_).entries > large; ratio += kWeak) {
+  const double entries = 9.0 * static_cast<double>(H.pattern->block_count());
+  for (double ratio = kWeak; ratio < 1 && predict_cholesky(pattern_).entries > entries; ratio += kWeak) {
     collect_rows(H, [&](const Stencil& stencil) { return is_stronger(stencil, ratio, H); });
     pattern_ = restricted_pattern(H);
   }
