@@ -322,15 +322,16 @@ material = { young = 1e5, poisson = 0.3, density = 300 }
 class Setup(CommandLine):
     """`build` of tools/setup.sh, which ./run calls, with a fake ninja."""
 
-    def build(self, seconds, code=0):
-        for name, text in ("ninja", f"echo '[3/9] Building x'\n/bin/sleep {seconds}\nexit {code}\n"), ("sleep", "/bin/sleep 0.5\n"):
+    def build(self, seconds, code=0, pause=0.5):
+        for name, text in (("ninja", f"echo '[3/9] Building x'\n/bin/sleep {seconds}\nexit {code}\n"),
+                           ("sleep", f"exec /bin/sleep {pause}\n")):
             (self.folder / self.write(name, "#!/bin/sh\n" + text)).chmod(0o755)
         script = f"root={self.folder}; . {pathlib.Path(__file__).parent.parent}/tools/setup.sh; build all"
         return subprocess.run(["sh", "-c", script], env={"PATH": f"{self.folder}:/usr/bin:/bin"}, capture_output=True,
                               text=True, timeout=60)
 
     def test_only_long_builds_are_announced(self):
-        self.assertEqual(self.build(0).stderr, "")
+        self.assertEqual(self.build(0, pause=100).stderr, "")  # the pause does not keep the pipe open
         self.assertIn("Building everything and its tests ... [3/9]\n", self.build(2).stderr)
         failed = self.build(0, code=1)
         self.assertEqual(failed.returncode, 1)

@@ -143,11 +143,11 @@ start_notice() {
   pause=30 format='%s ... %s\n'
   [ ! -t 2 ] || pause=1 format='\r\033[K%s ... %s'
   (
-    sleep 5
+    sleep 5 3>&- # which would keep a pipe open
     while kill -0 $$; do
       # shellcheck disable=SC2059
       printf "$format" "$1" "$(sed -n 's/^\(\[[0-9/]*\]\).*/\1/p' "$2" | tail -n 1)" >&3
-      sleep $pause
+      sleep $pause 3>&-
     done
   ) 3>&2 >/dev/null 2>&1 &
   notice=$!
