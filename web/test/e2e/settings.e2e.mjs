@@ -12,7 +12,7 @@ const rowOf = (page, key) => page.locator("#right .lil-controller").filter({ has
 async function backToTheScene({ page, heard, until }) {
   const from = heard.messages.length;
   await page.keyboard.press("Shift+O");
-  await page.getByRole("dialog").getByRole("button", { name: "Load" }).click();
+  await page.getByRole("dialog").getByRole("button", { name: "Load", exact: true }).click();
   await page.getByRole("dialog").waitFor({ state: "detached" });
   await until("the scene", () => heard.messages.slice(from).some(({ kind }) => kind === "scene"));
 }
