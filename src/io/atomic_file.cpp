@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cerrno>
 #include <system_error>
+#include <utility>
 
 #include "base/error.h"
 #include "base/free_memory.h"
@@ -39,57 +40,16 @@ class Descriptor {
   int number_;
 };
 
-// Temporary file beside the target, removed unless it was renamed onto the target. Its name is short, so that it fits
-// wherever the target's fits. It has the permissions of any new file.
-class TemporaryFile {
- public:
-  explicit TemporaryFile(const fs::path& target)
-      : name_(unused_name(target.parent_path())),
-        descriptor_(::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)),
-        exists_(descriptor_ >= 0) {}
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-  ~TemporaryFile() {
-    if (exists_) ::unlink(name_.c_str());
+// The name is short, so that it fits wherever the target's fits.
+std::string unused_name(const fs::path& folder) {
+  static std::atomic<unsigned> counter = 0;
+  for (;;) {
+    const std::string number = std::to_string(::getpid()) + "-" + std::to_string(counter++);
+    fs::path name = folder / (std::string(".aspic-") + number);
+    std::error_code error;
+    if (!fs::exists(fs::symlink_status(name, error))) return name.string();
   }
-
-  bool exists() const { return exists_; }
-  bool write(std::string_view contents) const {
-    while (!contents.empty()) {
-      const ssize_t written = ::write(descriptor_, contents.data(), contents.size());
-      if (written < 0 && errno == EINTR) continue;
-      if (written < 0) return false;
-      contents.remove_prefix(static_cast<size_t>(written));
-    }
-    return true;
-  }
-  // A replaced file keeps its permissions.
-  bool take_mode_of(const fs::path& target) const {
-    struct stat info {};
-    return ::stat(target.c_str(), &info) != 0 || ::fchmod(descriptor_, info.st_mode & 0777) == 0;
-  }
-  bool flush() { return ::fsync(descriptor_) == 0 && descriptor_.close() == 0; }
-  bool rename_to(const fs::path& target) {
-    if (::rename(name_.c_str(), target.c_str()) != 0) return false;
-    exists_ = false;
-    return true;
-  }
-
- private:
-  static std::string unused_name(const fs::path& folder) {
-    static std::atomic<unsigned> counter = 0;
-    for (;;) {
-      const std::string number = std::to_string(::getpid()) + "-" + std::to_string(counter++);
-      fs::path name = folder / (std::string(".aspic-") + number);
-      std::error_code error;
-      if (!fs::exists(fs::symlink_status(name, error))) return name.string();
-    }
-  }
-
-  std::string name_;
-  Descriptor descriptor_;
-  bool exists_ = false;
-};
+}
 
 // The file to replace: a symbolic link remains a link.
 fs::path replaced_file(const fs::path& path) {
@@ -123,14 +83,45 @@ std::string near_name(const fs::path& path) {
 
 }  // namespace
 
+AtomicFile::AtomicFile(const fs::path& path)
+    : path_(path), target_(replaced_file(path)), temporary_(unused_name(target_.parent_path())) {
+  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);  // as any new file
+  if (descriptor_ < 0) fail(path, "cannot be written", errno, "create the folder or choose a writable one");
+}
+
+AtomicFile::~AtomicFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+void AtomicFile::append(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail_to_write();
+    bytes.remove_prefix(static_cast<size_t>(written));
+  }
+}
+
+void AtomicFile::commit() {
+  struct stat info {};  // a replaced file keeps its permissions
+  if (::stat(target_.c_str(), &info) == 0 && ::fchmod(descriptor_, info.st_mode & 0777) != 0) fail_to_write();
+  if (::fsync(descriptor_) != 0) fail_to_write();
+  if (::close(std::exchange(descriptor_, -1)) != 0) fail_to_write();
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0)
+    fail(path_, "cannot be replaced", errno, "check its folder's permissions");
+  temporary_.clear();
+  flush_directory_of(target_);
+}
+
+void AtomicFile::fail_to_write() const {
+  fail(path_, "cannot be written", errno, "free some space or choose another disk");
+}
+
 void write_file(const fs::path& path, std::string_view contents) {
-  const fs::path target = replaced_file(path);
-  TemporaryFile temporary(target);
-  if (!temporary.exists()) fail(path, "cannot be written", errno, "create the folder or choose a writable one");
-  if (!temporary.write(contents) || !temporary.take_mode_of(target) || !temporary.flush())
-    fail(path, "cannot be written", errno, "free some space or choose another disk");
-  if (!temporary.rename_to(target)) fail(path, "cannot be replaced", errno, "check its folder's permissions");
-  flush_directory_of(target);
+  AtomicFile file(path);
+  file.append(contents);
+  file.commit();
 }
 
 std::string read_file(const fs::path& path) {

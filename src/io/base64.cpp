@@ -1,8 +1,10 @@
 #include "io/base64.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
+#include "base/parallel.h"
 #include "io/blank.h"
 
 namespace aspic {
@@ -18,16 +20,27 @@ constexpr std::array<int8_t, 256> make_values() {
 }
 constexpr std::array<int8_t, 256> kValues = make_values();
 
+constexpr size_t encoded_size(size_t bytes) { return (bytes + 2) / 3 * 4; }
+
+void encode(std::string_view bytes, char* digit) {
+  for (size_t i = 0; i < bytes.size(); i += 3) {
+    const size_t count = std::min<size_t>(3, bytes.size() - i);
+    uint32_t group = 0;
+    for (size_t k = 0; k < 3; ++k) group = group << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0);
+    for (size_t k = 0; k < 4; ++k) *digit++ = k <= count ? kAlphabet[group >> (18 - 6 * k) & 63] : '=';
+  }
+}
+
 }  // namespace
 
 void append_base64(std::string_view bytes, std::string& text) {
-  text.reserve(text.size() + (bytes.size() + 2) / 3 * 4);
-  for (size_t i = 0; i < bytes.size(); i += 3) {
-    const size_t count = bytes.size() - i < 3 ? bytes.size() - i : 3;
-    uint32_t group = 0;
-    for (size_t k = 0; k < 3; ++k) group = group << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0);
-    for (size_t k = 0; k < 4; ++k) text += k <= count ? kAlphabet[group >> (18 - 6 * k) & 63] : '=';
-  }
+  constexpr size_t kPerTask = 3 << 16;
+  const size_t first = text.size();
+  text.resize(first + encoded_size(bytes.size()));
+  parallel_for(static_cast<int>((bytes.size() + kPerTask - 1) / kPerTask), [&](int task) {
+    const size_t begin = static_cast<size_t>(task) * kPerTask;
+    encode(bytes.substr(begin, kPerTask), &text[first + encoded_size(begin)]);
+  });
 }
 
 bool decode_base64(std::string_view& text, size_t wanted, std::string& bytes) {

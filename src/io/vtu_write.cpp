@@ -1,6 +1,6 @@
 #include <zlib.h>
 
-#include <array>
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -21,7 +21,50 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "the files say LittleEndian");
 
 constexpr size_t kBlockSize = 1 << 18;  // bytes per compressed block, so that threads share the work
-constexpr int kCompression = 1;         // fastest: mantissas of positions hardly compress at any level
+constexpr size_t kSample = 1 << 13;     // bytes of a block that tell how well it compresses
+constexpr double kRepetitive = 0.7;     // compression ratio below which repeated strings are worth finding
+
+// A file that is written array by array, so that its text need not fit into memory.
+class VtuFile {
+ public:
+  explicit VtuFile(const std::string& path) : file_(path) {}
+  std::string text;  // not written yet
+  void write_text() {
+    file_.append(text);
+    text.clear();
+  }
+  void finish() {
+    write_text();
+    file_.commit();
+  }
+
+ private:
+  AtomicFile file_;
+};
+
+std::string deflated(std::string_view bytes, int strategy) {
+  z_stream stream{};
+  std::string block;
+  if (deflateInit2(&stream, Z_BEST_SPEED, Z_DEFLATED, MAX_WBITS, MAX_MEM_LEVEL, strategy) != Z_OK) return block;
+  block.resize(deflateBound(&stream, bytes.size()));
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+  stream.avail_in = static_cast<uInt>(bytes.size());
+  stream.next_out = reinterpret_cast<Bytef*>(block.data());
+  stream.avail_out = static_cast<uInt>(block.size());
+  const int result = deflate(&stream, Z_FINISH);
+  block.resize(result == Z_STREAM_END ? stream.total_out : 0);
+  deflateEnd(&stream);
+  return block;
+}
+
+// Mantissas of positions and stresses repeat no strings. Huffman codes alone then save as much, in a third of the time.
+std::string deflated(std::string_view bytes) {
+  const std::string_view sample = bytes.substr(0, kSample);
+  std::string block = deflated(sample, Z_DEFAULT_STRATEGY);
+  if (sample.size() == bytes.size()) return block;
+  const bool is_repetitive = static_cast<double>(block.size()) < kRepetitive * static_cast<double>(sample.size());
+  return deflated(bytes, is_repetitive ? Z_DEFAULT_STRATEGY : Z_HUFFMAN_ONLY);
+}
 
 template <class Stored, class Number>
 std::string bytes_of(std::span<const Number> numbers) {
@@ -33,23 +76,17 @@ std::string bytes_of(std::span<const Number> numbers) {
   return bytes;
 }
 
-std::string deflated(std::string_view bytes) {
-  uLongf size = compressBound(bytes.size());
-  std::string block(size, '\0');
-  const int result = compress2(reinterpret_cast<Bytef*>(block.data()), &size,
-                               reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(), kCompression);
-  block.resize(result == Z_OK ? size : 0);
-  return block;
-}
-
 // [blocks][size of a block][size of the last block, 0: full][compressed size of each block] blocks
-void append_compressed(std::string_view bytes, std::string& text) {
-  const size_t blocks = (bytes.size() + kBlockSize - 1) / kBlockSize;
-  std::vector<std::string> block(blocks);
-  parallel_for(static_cast<int>(blocks),
-               [&](int i) { block[i] = deflated(bytes.substr(static_cast<size_t>(i) * kBlockSize, kBlockSize)); });
-  std::vector<uint32_t> header = {static_cast<uint32_t>(blocks), kBlockSize,
-                                  static_cast<uint32_t>(bytes.size() % kBlockSize)};
+template <class Stored, class Number>
+void append_compressed(std::span<const Number> numbers, std::string& text) {
+  constexpr size_t kPerBlock = kBlockSize / sizeof(Stored);
+  std::vector<std::string> block((numbers.size() + kPerBlock - 1) / kPerBlock);
+  parallel_for(static_cast<int>(block.size()), [&](int i) {
+    const size_t first = static_cast<size_t>(i) * kPerBlock;
+    block[i] = deflated(bytes_of<Stored>(numbers.subspan(first, std::min(kPerBlock, numbers.size() - first))));
+  });
+  std::vector<uint32_t> header = {static_cast<uint32_t>(block.size()), kBlockSize,
+                                  static_cast<uint32_t>(numbers.size() * sizeof(Stored) % kBlockSize)};
   std::string data;
   for (const std::string& compressed : block) {
     if (compressed.empty()) throw InvalidInput("zlib could not compress the data (out of memory?)");
@@ -66,12 +103,13 @@ struct ArrayTag {
   std::string attributes = "";
 };
 
-void append_array(const ArrayTag& tag, std::string_view bytes, std::string& text) {
+template <class Stored, class Number>
+void append_array(const ArrayTag& tag, std::span<const Number> numbers, std::string& text) {
   text += "<DataArray type=\"" + std::string(tag.type) + "\" Name=\"" + xml_escaped(tag.name) + "\"";
   // Omitted for scalars, which meshio would otherwise return as a column.
   if (tag.components != 1) text += " NumberOfComponents=\"" + std::to_string(tag.components) + "\"";
   text += tag.attributes + " format=\"binary\">\n";
-  append_compressed(bytes, text);
+  append_compressed<Stored>(numbers, text);
   text += "\n</DataArray>\n";
 }
 
@@ -79,18 +117,19 @@ void append_field(const Field& field, const std::string& attributes, std::string
   const std::span<const double> values = field.values;
   switch (field.type) {
     case FieldType::float64:
-      return append_array({"Float64", field.name, field.components, attributes}, bytes_of<double>(values), text);
+      return append_array<double>({"Float64", field.name, field.components, attributes}, values, text);
     case FieldType::float32:
-      return append_array({"Float32", field.name, field.components, attributes}, bytes_of<float>(values), text);
+      return append_array<float>({"Float32", field.name, field.components, attributes}, values, text);
     case FieldType::int32:
-      return append_array({"Int32", field.name, field.components, attributes}, bytes_of<int32_t>(values), text);
+      return append_array<int32_t>({"Int32", field.name, field.components, attributes}, values, text);
   }
 }
 
-void append_fields(const std::vector<Field>& fields, [[maybe_unused]] size_t count, std::string& text) {
+void write_fields(const std::vector<Field>& fields, [[maybe_unused]] size_t count, VtuFile& file) {
   for (const Field& field : fields) {
     ASPIC_CHECK(field.values.size() == count * static_cast<size_t>(field.components));
-    append_field(field, "", text);
+    append_field(field, "", file.text);
+    file.write_text();
   }
 }
 
@@ -107,40 +146,48 @@ void append_file_fields(const std::vector<Field>& fields, std::string& text) {
 struct Cells {
   std::vector<int> connectivity;
   std::vector<int64_t> offsets;  // end of each cell in the connectivity
-  std::string types;
+  std::vector<uint8_t> types;
 
+  void reserve(size_t count) {
+    connectivity.reserve(4 * count);
+    offsets.reserve(count);
+    types.reserve(count);
+  }
   template <class Nodes>
   void add(const Nodes& nodes, uint8_t type) {
-    connectivity.insert(connectivity.end(), nodes.begin(), nodes.end());
+    for (const int node : nodes) connectivity.push_back(node);
     offsets.push_back(static_cast<int64_t>(connectivity.size()));
-    types.push_back(static_cast<char>(type));
+    types.push_back(type);
   }
 };
 
-void append_cells(const Cells& cells, std::string& text) {
-  append_array({"Int32", "connectivity"}, bytes_of<int32_t>(std::span<const int>(cells.connectivity)), text);
-  append_array({"Int64", "offsets"}, bytes_of<int64_t>(std::span<const int64_t>(cells.offsets)), text);
-  append_array({"UInt8", "types"}, cells.types, text);
+void write_cells(const Cells& cells, VtuFile& file) {
+  append_array<int32_t>({"Int32", "connectivity"}, std::span<const int>(cells.connectivity), file.text);
+  file.write_text();
+  append_array<int64_t>({"Int64", "offsets"}, std::span<const int64_t>(cells.offsets), file.text);
+  append_array<uint8_t>({"UInt8", "types"}, std::span<const uint8_t>(cells.types), file.text);
+  file.write_text();
 }
 
 void write(const std::string& path, std::span<const double> points, const Cells& cells, const VtuFields& fields) {
   const size_t point_count = points.size() / 3;
-  std::string text =
+  VtuFile file(path);
+  file.text =
       "<?xml version=\"1.0\"?>\n"
       "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt32\" "
       "compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n";
-  append_file_fields(fields.file_fields, text);
-  text += "<Piece NumberOfPoints=\"" + std::to_string(point_count) + "\" NumberOfCells=\"" +
-          std::to_string(cells.types.size()) + "\">\n<Points>\n";
-  append_array({"Float64", "Points", 3}, bytes_of<double>(points), text);
-  text += "</Points>\n<Cells>\n";
-  append_cells(cells, text);
-  text += "</Cells>\n<PointData>\n";
-  append_fields(fields.point_fields, point_count, text);
-  text += "</PointData>\n<CellData>\n";
-  append_fields(fields.cell_fields, cells.types.size(), text);
-  text += "</CellData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
-  write_file(path, text);
+  append_file_fields(fields.file_fields, file.text);
+  file.text += "<Piece NumberOfPoints=\"" + std::to_string(point_count) + "\" NumberOfCells=\"" +
+               std::to_string(cells.types.size()) + "\">\n<Points>\n";
+  append_array<double>({"Float64", "Points", 3}, points, file.text);
+  file.text += "</Points>\n<Cells>\n";
+  write_cells(cells, file);
+  file.text += "</Cells>\n<PointData>\n";
+  write_fields(fields.point_fields, point_count, file);
+  file.text += "</PointData>\n<CellData>\n";
+  write_fields(fields.cell_fields, cells.types.size(), file);
+  file.text += "</CellData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
+  file.finish();
 }
 
 const char* type_name(FieldType type) {
@@ -183,6 +230,7 @@ void write_pvtu(const std::string& path, const std::vector<std::string>& pieces,
 
 void write_vtu(const std::string& path, std::span<const double> points, const TetMesh& mesh, const VtuFields& fields) {
   Cells cells;
+  cells.reserve(static_cast<size_t>(mesh.element_count()));
   for (int e = 0; e < mesh.element_count(); ++e) {
     const TetNodes nodes = nodes_of(mesh, e);
     cells.add(nodes, nodes.count == 2   ? kVtkLine

@@ -5,9 +5,11 @@
 #include "base/formatted.h"
 #include "base/parallel.h"
 #include "mesh/box_tree.h"
+#include "mesh/components.h"
 #include "mesh/findings.h"
 #include "mesh/grouped_elements.h"
 #include "mesh/order.h"
+#include "mesh/self_intersection.h"
 #include "mesh/surface.h"
 #include "mesh/tet_shape.h"
 #include "mesh/topology.h"
@@ -66,7 +68,8 @@ std::string histogram_text(const TetMesh& mesh) {
   return text;
 }
 
-void examine_shapes(const TetMesh& mesh, Findings& findings) {
+// Returns whether all tets have a positive volume.
+bool examine_shapes(const TetMesh& mesh, Findings& findings) {
   const TetShapes shapes = tet_shapes(mesh);
   const size_t total = mesh.tets.size();
   findings.add({Severity::error, "repeated_vertex_in_tet",
@@ -80,18 +83,19 @@ void examine_shapes(const TetMesh& mesh, Findings& findings) {
                     std::to_string(shapes.worst_inverted) + " with volume " + three_digits(shapes.most_negative) +
                     " m^3",
                 "flip them with --repair", shapes.inverted});
-  if (shapes.slivers.empty()) return;
-  findings.add({Severity::warning, "slivers",
-                count_of(shapes.slivers.size(), total, "tets",
-                         "are slivers (a dihedral angle within 5 degrees of 0 or 180); the worst is tet ") +
-                    std::to_string(shapes.worst_sliver) + " with " + three_digits(shapes.smallest_angle) +
-                    " degrees; mean ratios by tenths: " + histogram_text(mesh),
-                "remesh the shape with aspic mesh; slivers make the solver slow and the material stiff",
-                shapes.slivers});
+  if (!shapes.slivers.empty())
+    findings.add({Severity::warning, "slivers",
+                  count_of(shapes.slivers.size(), total, "tets",
+                           "are slivers (a dihedral angle within 5 degrees of 0 or 180); the worst is tet ") +
+                      std::to_string(shapes.worst_sliver) + " with " + three_digits(shapes.smallest_angle) +
+                      " degrees; mean ratios by tenths: " + histogram_text(mesh),
+                  "remesh the shape with aspic mesh; slivers make the solver slow and the material stiff",
+                  shapes.slivers});
+  return shapes.repeated_vertex.empty() && shapes.flat.empty() && shapes.inverted.empty();
 }
 
-// Finds faces shared by more than two tets, or by two tets on the same side.
-void examine_faces(const TetMesh& mesh, Findings& findings) {
+// Finds faces shared by more than two tets, or by two tets on the same side. Returns whether there are none.
+bool examine_faces(const TetMesh& mesh, Findings& findings) {
   constexpr int kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
   const auto face = [&](int place) {
     const auto& [i, j, k] = kFaces[place % 4];
@@ -127,6 +131,7 @@ void examine_faces(const TetMesh& mesh, Findings& findings) {
                 count_of(folded.size(), mesh.tets.size(), "tets",
                          "lie on the same side of a face as their neighbor, so they overlap"),
                 "remesh the shape with aspic mesh", folded});
+  return crowded.empty() && folded.empty();
 }
 
 // Finds tets whose centroid is inside another tet. This misses some overlaps, but finds duplicated parts.
@@ -176,23 +181,44 @@ std::vector<int> overlapping_tets(const TetMesh& mesh) {
   return overlapping;
 }
 
-void examine_boundary(const TetMesh& mesh, Findings& findings) {
-  const std::vector<Triangle> triangles = boundary_triangles(mesh, 0, mesh.tet_count());
-  const SurfaceTopology surface = topology(triangles, mesh.vertex_count());
-  std::vector<int> on_edges;
-  for (int t : surface.non_manifold) on_edges.insert(on_edges.end(), triangles[t].begin(), triangles[t].end());
+void examine_overlaps(const TetMesh& mesh, Findings& findings) {
+  const std::vector<int> overlapping = overlapping_tets(mesh);
+  findings.add({Severity::warning, "overlapping_tets",
+                count_of(overlapping.size(), mesh.tets.size(), "tets", "have their centroid inside another tet"),
+                "remesh the shape with aspic mesh", overlapping});
+}
+
+void examine_boundary(const BoundarySurface& boundary, const SurfaceTopology& topology, int vertices,
+                      Findings& findings) {
+  const auto in_mesh = [&](int v) { return boundary.tet_vertex[v]; };
+  std::vector<int> on_edges, at_points;
+  for (const int t : topology.non_manifold)
+    for (const int v : boundary.surface.triangles[t]) on_edges.push_back(in_mesh(v));
+  for (const int v : topology.non_manifold_vertices) at_points.push_back(in_mesh(v));
   std::sort(on_edges.begin(), on_edges.end());
   on_edges.erase(std::unique(on_edges.begin(), on_edges.end()), on_edges.end());
   findings.add(
       {Severity::warning, "non_manifold_edges",
-       std::to_string(surface.non_manifold_edges) +
+       std::to_string(topology.non_manifold_edges) +
            " edges of the boundary have more than two boundary triangles: parts are connected only by an edge, "
            "like a hinge (the vertices of these triangles are listed)",
        "join or separate the parts in the source model", on_edges});
   findings.add({Severity::warning, "non_manifold_vertices",
-                count_of(surface.non_manifold_vertices.size(), mesh.rest.size(), "vertices",
+                count_of(at_points.size(), static_cast<size_t>(vertices), "vertices",
                          "connect parts only at a point, like a ball joint"),
-                "join or separate the parts in the source model", surface.non_manifold_vertices});
+                "join or separate the parts in the source model", at_points});
+}
+
+// Whether the closed surface is a manifold without self-intersections. A connected mesh of tets of positive volume that
+// lie on opposite sides of their common faces then covers each point at most once: the number of tets at a point is
+// constant away from the boundary, changes by one across it, and is zero outside.
+bool is_embedded(const TriMesh& surface, const SurfaceTopology& topology) {
+  if (topology.non_manifold_edges > 0 || !topology.non_manifold_vertices.empty()) return false;
+  const std::vector<int> first = first_at_same_place(surface.vertices);
+  for (int v = 0; v < surface.vertex_count(); ++v)
+    if (first[v] != v) return false;
+  const SelfIntersections intersections = self_intersections(surface, 1);
+  return intersections.pairs.empty() && intersections.is_complete;
 }
 
 }  // namespace
@@ -200,18 +226,19 @@ void examine_boundary(const TetMesh& mesh, Findings& findings) {
 std::vector<Finding> diagnose(const TetMesh& mesh) {
   Findings findings;
   if (!examine_vertices(mesh.rest, mesh.tets, "tets", findings)) return findings.take();
-  examine_shapes(mesh, findings);
+  const bool are_positive = examine_shapes(mesh, findings);
   const std::vector<int> repeated = repeated_elements(mesh.tets);
   findings.add({Severity::error, "repeated_tets",
                 count_of(repeated.size(), mesh.tets.size(), "tets", "have the same vertices as an earlier one"),
                 "remove them with --repair", repeated});
-  examine_faces(mesh, findings);
-  const std::vector<int> overlapping = overlapping_tets(mesh);
-  findings.add({Severity::warning, "overlapping_tets",
-                count_of(overlapping.size(), mesh.tets.size(), "tets", "have their centroid inside another tet"),
-                "remesh the shape with aspic mesh", overlapping});
-  examine_boundary(mesh, findings);
-  examine_components(mesh, findings);
+  const bool do_faces_agree = examine_faces(mesh, findings);
+  const BoundarySurface boundary = boundary_surface(mesh);
+  const SurfaceTopology boundary_topology = topology(boundary.surface.triangles, boundary.surface.vertex_count());
+  const auto parts = tet_components(mesh);
+  const bool is_simple = are_positive && do_faces_agree && parts.size() == 1 && mesh.mids.empty();
+  if (!is_simple || !is_embedded(boundary.surface, boundary_topology)) examine_overlaps(mesh, findings);
+  examine_boundary(boundary, boundary_topology, mesh.vertex_count(), findings);
+  examine_components(mesh, parts, findings);
   examine_units(mesh.rest, findings);
   return findings.take();
 }

@@ -153,8 +153,7 @@ void add_components(const std::vector<std::vector<int>>& components, const std::
 
 }  // namespace
 
-void examine_components(const TetMesh& mesh, Findings& findings) {
-  const auto parts = tet_components(mesh);
+void examine_components(const TetMesh& mesh, const std::vector<std::vector<int>>& parts, Findings& findings) {
   if (parts.size() > 1) add_components(parts, "tets", are_joined_by_merging(parts, mesh.tets, mesh.rest), findings);
 }
 

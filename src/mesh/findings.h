@@ -33,7 +33,8 @@ bool examine_vertices(const std::vector<Vec3d>& vertices, const std::vector<Elem
 // "extent 70 m; if ... use scale = ..." for extents that are rare in meters, otherwise empty.
 std::string unit_hint(const Box& box);
 void examine_units(const std::vector<Vec3d>& vertices, Findings& findings);
-void examine_components(const TetMesh& mesh, Findings& findings);
+// parts: the tets of each component
+void examine_components(const TetMesh& mesh, const std::vector<std::vector<int>>& parts, Findings& findings);
 void examine_components(const TriMesh& mesh, Findings& findings);
 
 }  // namespace aspic

@@ -62,14 +62,11 @@ uint64_t hilbert_code(Cell cell) {
   constexpr uint64_t kTop = uint64_t{1} << (kBits - 1);
   for (uint64_t bit = kTop; bit > 1; bit >>= 1)
     for (uint64_t& c : cell) {
-      const uint64_t below = bit - 1;
-      if (c & bit) {
-        cell[0] ^= below;
-      } else {
-        const uint64_t swapped = (cell[0] ^ c) & below;
-        cell[0] ^= swapped;
-        c ^= swapped;
-      }
+      const uint64_t below = bit - 1,
+                     is_set = 0 - static_cast<uint64_t>((c & bit) != 0);  // a mask: branches here cannot be predicted
+      const uint64_t swapped = (cell[0] ^ c) & below & ~is_set;
+      cell[0] ^= swapped | (below & is_set);
+      c ^= swapped;
     }
   cell[1] ^= cell[0];
   cell[2] ^= cell[1];
