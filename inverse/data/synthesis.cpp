@@ -122,11 +122,12 @@ class Bench {
   double young_around(const std::vector<IndentationSite>& sites) const {
     std::vector<char> is_site(truth_.mesh.rest.size(), 0);
     for (const IndentationSite& s : sites) is_site[s.vertex] = 1;
+    const std::vector<MaterialParameters> parameters = model_.elasticity.front()->parameters();
     double young = 0;
     for (int t = 0; t < truth_.mesh.tet_count(); ++t) {
       const TetNodes nodes = nodes_of(truth_.mesh, t);
       if (std::any_of(nodes.begin(), nodes.end(), [&](int v) { return is_site[v] != 0; }))
-        young = std::max(young, young_modulus(model_.elasticity.front()->parameters()[t].lame));
+        young = std::max(young, young_modulus(parameters[t].lame));
     }
     return young;
   }
@@ -189,8 +190,7 @@ class Bench {
 
   // Solves each indentation from the previous depth; a case without equilibrium ends its indentation.
   void measure(const SynthesisObserver& observe) {
-    const std::vector<MaterialParameters> parameters(model_.elasticity.front()->parameters().begin(),
-                                                     model_.elasticity.front()->parameters().end());
+    const std::vector<MaterialParameters> parameters = model_.elasticity.front()->parameters();
     const int count = static_cast<int>(truth_.cases.size());
     std::vector<double> last;
     std::string failed_group;

@@ -91,7 +91,7 @@ class MeanVolumeDerivatives : public ParameterDerivatives {
   }
 
  private:
-  std::span<const MaterialParameters> parameters() const { return term_.parameters(); }
+  const ParameterList& parameters() const { return term_.parameters_; }
   size_t entry(size_t tet) const { return term_.parameter_count() * tet; }
   int tet(int batch, int lane) const { return volume_.batches_[batch].tet[lane] - volume_.first_; }
 

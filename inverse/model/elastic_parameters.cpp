@@ -21,7 +21,10 @@ ElasticParameters::ElasticParameters(const Model& model) : start_{0}, tet_start_
 
 std::vector<MaterialParameters> ElasticParameters::get() const {
   std::vector<MaterialParameters> all;
-  for (const TetElasticity* term : terms_) all.insert(all.end(), term->parameters().begin(), term->parameters().end());
+  for (const TetElasticity* term : terms_) {
+    const std::vector<MaterialParameters> own = term->parameters();
+    all.insert(all.end(), own.begin(), own.end());
+  }
   return all;
 }
 

@@ -53,8 +53,7 @@ MotionParameters::MotionParameters(MotionModel model, const std::vector<std::str
   if (m.bodies.size() > 1 || m.elasticity.size() != 1)
     throw InvalidInput("the model has " + std::to_string(m.bodies.size()) +
                        " bodies; a motion is fitted to one body, so keep only the one with the markers");
-  const auto material = m.elasticity[0]->parameters();
-  material_.assign(material.begin(), material.end());
+  material_ = m.elasticity[0]->parameters();
   density_ = m.density;
   for (int t = 0; t < m.mesh.tet_count(); ++t) volume_.push_back(volume(m.mesh, t));
   for (int v = 0; v < m.mesh.vertex_count(); ++v)

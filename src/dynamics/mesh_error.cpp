@@ -440,9 +440,10 @@ class Estimator {
     for (size_t b = 0; b < model.bodies.size(); ++b) {
       const BodyRange& body = model.bodies[b];
       BodyMeshError& error = found.bodies.emplace_back(BodyMeshError{.energy = energy[b]});
+      const std::vector<MaterialParameters> parameters = model.elasticity[b]->parameters();
       double stiffness = 0;
       for (int t = body.first_tet; t < body.first_tet + body.tet_count; ++t) {
-        stiffness += volume(model.mesh, t) * model.elasticity[b]->parameters()[t - body.first_tet].lame.mu;
+        stiffness += volume(model.mesh, t) * parameters[t - body.first_tet].lame.mu;
         if (found.density[t] > (error.worst_tet < 0 ? 0 : found.density[error.worst_tet])) error.worst_tet = t;
       }
       error.motion = motion_of(body, d);

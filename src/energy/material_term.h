@@ -10,6 +10,7 @@
 
 #include "energy/custom_elasticity.h"
 #include "energy/make_tet_term.h"
+#include "energy/parameter_list.h"
 #include "energy/tet_elasticity.h"
 #include "energy/tet_term.h"
 
@@ -29,7 +30,7 @@ class MaterialTerm : public TetTerm<M, TetElasticity, Batch> {
       : Term(std::move(name), mesh, first, own_params(parameters), std::move(material)),
         first_(first),
         parameter_count_(2 + extra_count(Term::material_)),
-        parameters_(parameters.begin(), parameters.end()) {}
+        parameters_(parameters, parameter_count_) {}
 
   double min_det_F(Positions x) const override {
     return reduce([&](int i) { return min(Batch::least_determinant(F(i, x))); },
@@ -50,20 +51,19 @@ class MaterialTerm : public TetTerm<M, TetElasticity, Batch> {
 
   std::unique_ptr<TetElasticity> on(const TetMesh& mesh) const override {
     if constexpr (requires { M::info(); })
-      return make_tet_elasticity(M::info().name, mesh, first_, parameters_);
+      return make_tet_elasticity(M::info().name, mesh, first_, parameters());
     else if constexpr (requires(M m) { m.density; })
-      return custom_material(std::string(this->name()), material_.extra, material_.density)(mesh, first_, parameters_);
+      return custom_material(std::string(this->name()), material_.extra, material_.density)(mesh, first_, parameters());
     else
       return nullptr;
   }
 
   int parameter_count() const override { return parameter_count_; }
 
-  std::span<const MaterialParameters> parameters() const override { return parameters_; }
+  std::vector<MaterialParameters> parameters() const override { return parameters_.all(); }
 
   void set_parameters(std::span<const MaterialParameters> parameters) override {
-    ASPIC_CHECK(parameters.size() == parameters_.size());
-    std::copy(parameters.begin(), parameters.end(), parameters_.begin());
+    parameters_.set(parameters);
     parallel_for(batch_count(), [&](int i) {
       std::array<typename Term::template Params<double>, kPackWidth> lanes;
       for (int l = 0; l < kPackWidth; ++l) lanes[l] = M::params(parameters_[tet(i, l)]);
@@ -109,7 +109,7 @@ class MaterialTerm : public TetTerm<M, TetElasticity, Batch> {
   int tet(int batch, int lane) const { return batches_[batch].tet[lane] - first_; }
 
   int first_, parameter_count_;
-  std::vector<MaterialParameters> parameters_;  // in the order of the mesh
+  ParameterList parameters_;  // in the order of the mesh
 };
 
 template <class M, class Batch>

@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "energy/mean_volume.h"
 #include "energy/node_barrier.h"
+#include "energy/parameter_list.h"
 #include "energy/quadratic_batch.h"
 #include "energy/stiff_energy.h"
 #include "energy/tet_term.h"
@@ -228,7 +229,7 @@ class MeanVolume : public TetElasticity, public StiffEnergy, public PredictingEn
              std::span<const MaterialParameters> parameters, bool has_barrier)
       : shape_(make_shape(mesh, first, pointwise(parameters))),
         volume_(mesh, first, parameters),
-        parameters_(parameters.begin(), parameters.end()) {
+        parameters_(parameters, shape_->parameter_count()) {
     if (has_barrier) nodes_ = make_node_barrier(mesh, first, parameters, shape_->parameter_count());
   }
 
@@ -283,10 +284,9 @@ class MeanVolume : public TetElasticity, public StiffEnergy, public PredictingEn
   }
 
   int parameter_count() const override { return shape_->parameter_count(); }
-  std::span<const MaterialParameters> parameters() const override { return parameters_; }
+  std::vector<MaterialParameters> parameters() const override { return parameters_.all(); }
   void set_parameters(std::span<const MaterialParameters> parameters) override {
-    ASPIC_CHECK(parameters.size() == parameters_.size());
-    std::copy(parameters.begin(), parameters.end(), parameters_.begin());
+    parameters_.set(parameters);
     shape_->set_parameters(pointwise(parameters));
     volume_.set_parameters(parameters);
     if (nodes_) nodes_->set_parameters(parameters);
@@ -297,7 +297,7 @@ class MeanVolume : public TetElasticity, public StiffEnergy, public PredictingEn
 
   std::unique_ptr<TetElasticity> shape_, nodes_;  // nodes_: null without a barrier
   VolumeTerm volume_;
-  std::vector<MaterialParameters> parameters_;  // in the order of the mesh
+  ParameterList parameters_;  // in the order of the mesh
 };
 
 }  // namespace aspic::mean_volume

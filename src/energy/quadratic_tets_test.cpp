@@ -327,7 +327,7 @@ TEST(MeanVolume, StiffRowsArePartOfHessian) {
   stiff->add_stiff_rows(x, 2, rows);
   EXPECT_EQ(rows.size(), 27u) << "a quarter of the 36 tets is compressible";
   BlockSparse H(pattern), shape(pattern);
-  std::vector<MaterialParameters> pointwise(V->parameters().begin(), V->parameters().end());
+  std::vector<MaterialParameters> pointwise = V->parameters();
   for (MaterialParameters& p : pointwise) p.lame.lambda = std::min(p.lame.lambda, 1.5 * p.lame.mu);
   const auto V_shape = make_tet_elasticity("neo_hookean", small(), 0, pointwise);
   V_shape->bind(pattern);

@@ -575,7 +575,7 @@ class RodStretch : public TetElasticity {
   }
 
   int parameter_count() const override { return 0; }
-  std::span<const MaterialParameters> parameters() const override { return {}; }
+  std::vector<MaterialParameters> parameters() const override { return {}; }
   void set_parameters(std::span<const MaterialParameters>) override {}
 
  private:

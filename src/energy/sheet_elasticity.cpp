@@ -73,7 +73,7 @@ class SheetElasticity : public TetElasticity, public BendingElements {
   }
 
   int parameter_count() const override { return 0; }
-  std::span<const MaterialParameters> parameters() const override { return {}; }
+  std::vector<MaterialParameters> parameters() const override { return {}; }
   void set_parameters(std::span<const MaterialParameters>) override {}
 
  private:

@@ -31,7 +31,7 @@ class TetElasticity : public SteadyEnergy {
 
   // The parameters theta: for each tet of this term, mu, lambda and the entries of MaterialInfo::extra, tet by tet.
   virtual int parameter_count() const = 0;                                          // per tet
-  virtual std::span<const MaterialParameters> parameters() const = 0;               // one per tet
+  virtual std::vector<MaterialParameters> parameters() const = 0;                   // one per tet
   virtual void set_parameters(std::span<const MaterialParameters> parameters) = 0;  // one per tet
 };
 

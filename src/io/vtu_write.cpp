@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <utility>
 
 #include "base/check.h"
 #include "base/error.h"
@@ -28,18 +29,31 @@ constexpr double kRepetitive = 0.7;     // compression ratio below which repeate
 class VtuFile {
  public:
   explicit VtuFile(const std::string& path) : file_(path) {}
-  std::string text;  // not written yet
-  void write_text() {
-    file_.append(text);
-    text.clear();
+  void append(std::string_view text) {
+    text_ += text;
+    if (text_.size() >= kPiece) write();
   }
-  void finish() {
-    write_text();
+  void append_base64(std::string_view bytes) {
+    for (size_t first = 0; first < bytes.size(); first += kPiece) {
+      aspic::append_base64(bytes.substr(first, kPiece), text_);
+      if (text_.size() >= kPiece) write();
+    }
+  }
+  void commit() {
+    write();
     file_.commit();
   }
 
  private:
+  static constexpr size_t kPiece = 3 << 20;  // a multiple of 3, so that pieces of base64 need no padding
+
+  void write() {
+    file_.append(text_);
+    text_.clear();
+  }
+
   AtomicFile file_;
+  std::string text_;  // to be written
 };
 
 std::string deflated(std::string_view bytes, int strategy) {
@@ -78,7 +92,7 @@ std::string bytes_of(std::span<const Number> numbers) {
 
 // [blocks][size of a block][size of the last block, 0: full][compressed size of each block] blocks
 template <class Stored, class Number>
-void append_compressed(std::span<const Number> numbers, std::string& text) {
+void append_compressed(std::span<const Number> numbers, VtuFile& file) {
   constexpr size_t kPerBlock = kBlockSize / sizeof(Stored);
   std::vector<std::string> block((numbers.size() + kPerBlock - 1) / kPerBlock);
   parallel_for(static_cast<int>(block.size()), [&](int i) {
@@ -87,14 +101,17 @@ void append_compressed(std::span<const Number> numbers, std::string& text) {
   });
   std::vector<uint32_t> header = {static_cast<uint32_t>(block.size()), kBlockSize,
                                   static_cast<uint32_t>(numbers.size() * sizeof(Stored) % kBlockSize)};
-  std::string data;
+  size_t size = 0;
   for (const std::string& compressed : block) {
     if (compressed.empty()) throw InvalidInput("zlib could not compress the data (out of memory?)");
     header.push_back(static_cast<uint32_t>(compressed.size()));
-    data += compressed;
+    size += compressed.size();
   }
-  append_base64({reinterpret_cast<const char*>(header.data()), header.size() * 4}, text);
-  append_base64(data, text);
+  std::string data;
+  data.reserve(size);
+  for (std::string& compressed : block) data += std::exchange(compressed, {});
+  file.append_base64({reinterpret_cast<const char*>(header.data()), header.size() * 4});
+  file.append_base64(data);
 }
 
 struct ArrayTag {
@@ -104,43 +121,43 @@ struct ArrayTag {
 };
 
 template <class Stored, class Number>
-void append_array(const ArrayTag& tag, std::span<const Number> numbers, std::string& text) {
-  text += "<DataArray type=\"" + std::string(tag.type) + "\" Name=\"" + xml_escaped(tag.name) + "\"";
+void append_array(const ArrayTag& tag, std::span<const Number> numbers, VtuFile& file) {
+  std::string text = "<DataArray type=\"" + std::string(tag.type) + "\" Name=\"" + xml_escaped(tag.name) + "\"";
   // Omitted for scalars, which meshio would otherwise return as a column.
   if (tag.components != 1) text += " NumberOfComponents=\"" + std::to_string(tag.components) + "\"";
   text += tag.attributes + " format=\"binary\">\n";
-  append_compressed<Stored>(numbers, text);
-  text += "\n</DataArray>\n";
+  file.append(text);
+  append_compressed<Stored>(numbers, file);
+  file.append("\n</DataArray>\n");
 }
 
-void append_field(const Field& field, const std::string& attributes, std::string& text) {
+void append_field(const Field& field, const std::string& attributes, VtuFile& file) {
   const std::span<const double> values = field.values;
   switch (field.type) {
     case FieldType::float64:
-      return append_array<double>({"Float64", field.name, field.components, attributes}, values, text);
+      return append_array<double>({"Float64", field.name, field.components, attributes}, values, file);
     case FieldType::float32:
-      return append_array<float>({"Float32", field.name, field.components, attributes}, values, text);
+      return append_array<float>({"Float32", field.name, field.components, attributes}, values, file);
     case FieldType::int32:
-      return append_array<int32_t>({"Int32", field.name, field.components, attributes}, values, text);
+      return append_array<int32_t>({"Int32", field.name, field.components, attributes}, values, file);
   }
 }
 
-void write_fields(const std::vector<Field>& fields, [[maybe_unused]] size_t count, VtuFile& file) {
+void append_fields(const std::vector<Field>& fields, [[maybe_unused]] size_t count, VtuFile& file) {
   for (const Field& field : fields) {
     ASPIC_CHECK(field.values.size() == count * static_cast<size_t>(field.components));
-    append_field(field, "", file.text);
-    file.write_text();
+    append_field(field, "", file);
   }
 }
 
-void append_file_fields(const std::vector<Field>& fields, std::string& text) {
+void append_file_fields(const std::vector<Field>& fields, VtuFile& file) {
   if (fields.empty()) return;
-  text += "<FieldData>\n";
+  file.append("<FieldData>\n");
   for (const Field& field : fields) {
     const size_t tuples = field.values.size() / static_cast<size_t>(field.components);
-    append_field(field, " NumberOfTuples=\"" + std::to_string(tuples) + "\"", text);
+    append_field(field, " NumberOfTuples=\"" + std::to_string(tuples) + "\"", file);
   }
-  text += "</FieldData>\n";
+  file.append("</FieldData>\n");
 }
 
 struct Cells {
@@ -161,33 +178,31 @@ struct Cells {
   }
 };
 
-void write_cells(const Cells& cells, VtuFile& file) {
-  append_array<int32_t>({"Int32", "connectivity"}, std::span<const int>(cells.connectivity), file.text);
-  file.write_text();
-  append_array<int64_t>({"Int64", "offsets"}, std::span<const int64_t>(cells.offsets), file.text);
-  append_array<uint8_t>({"UInt8", "types"}, std::span<const uint8_t>(cells.types), file.text);
-  file.write_text();
+void append_cells(const Cells& cells, VtuFile& file) {
+  append_array<int32_t>({"Int32", "connectivity"}, std::span<const int>(cells.connectivity), file);
+  append_array<int64_t>({"Int64", "offsets"}, std::span<const int64_t>(cells.offsets), file);
+  append_array<uint8_t>({"UInt8", "types"}, std::span<const uint8_t>(cells.types), file);
 }
 
 void write(const std::string& path, std::span<const double> points, const Cells& cells, const VtuFields& fields) {
   const size_t point_count = points.size() / 3;
   VtuFile file(path);
-  file.text =
+  file.append(
       "<?xml version=\"1.0\"?>\n"
       "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt32\" "
-      "compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n";
-  append_file_fields(fields.file_fields, file.text);
-  file.text += "<Piece NumberOfPoints=\"" + std::to_string(point_count) + "\" NumberOfCells=\"" +
-               std::to_string(cells.types.size()) + "\">\n<Points>\n";
-  append_array<double>({"Float64", "Points", 3}, points, file.text);
-  file.text += "</Points>\n<Cells>\n";
-  write_cells(cells, file);
-  file.text += "</Cells>\n<PointData>\n";
-  write_fields(fields.point_fields, point_count, file);
-  file.text += "</PointData>\n<CellData>\n";
-  write_fields(fields.cell_fields, cells.types.size(), file);
-  file.text += "</CellData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
-  file.finish();
+      "compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n");
+  append_file_fields(fields.file_fields, file);
+  file.append("<Piece NumberOfPoints=\"" + std::to_string(point_count) + "\" NumberOfCells=\"" +
+              std::to_string(cells.types.size()) + "\">\n<Points>\n");
+  append_array<double>({"Float64", "Points", 3}, points, file);
+  file.append("</Points>\n<Cells>\n");
+  append_cells(cells, file);
+  file.append("</Cells>\n<PointData>\n");
+  append_fields(fields.point_fields, point_count, file);
+  file.append("</PointData>\n<CellData>\n");
+  append_fields(fields.cell_fields, cells.types.size(), file);
+  file.append("</CellData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n");
+  file.commit();
 }
 
 const char* type_name(FieldType type) {
@@ -215,17 +230,19 @@ void declare_fields(const char* section, const std::vector<Field>& fields, std::
 }  // namespace
 
 void write_pvtu(const std::string& path, const std::vector<std::string>& pieces, const VtuFields& fields) {
-  std::string text =
+  VtuFile file(path);
+  file.append(
       "<?xml version=\"1.0\"?>\n"
       "<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt32\" "
-      "compressor=\"vtkZLibDataCompressor\">\n<PUnstructuredGrid GhostLevel=\"0\">\n";
-  append_file_fields(fields.file_fields, text);
-  text += "<PPoints>\n<PDataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"/>\n</PPoints>\n";
+      "compressor=\"vtkZLibDataCompressor\">\n<PUnstructuredGrid GhostLevel=\"0\">\n");
+  append_file_fields(fields.file_fields, file);
+  std::string text = "<PPoints>\n<PDataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"/>\n</PPoints>\n";
   declare_fields("PPointData", fields.point_fields, text);
   declare_fields("PCellData", fields.cell_fields, text);
   for (const std::string& piece : pieces) text += "<Piece Source=\"" + xml_escaped(piece) + "\"/>\n";
   text += "</PUnstructuredGrid>\n</VTKFile>\n";
-  write_file(path, text);
+  file.append(text);
+  file.commit();
 }
 
 void write_vtu(const std::string& path, std::span<const double> points, const TetMesh& mesh, const VtuFields& fields) {

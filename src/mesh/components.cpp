@@ -30,6 +30,7 @@ std::vector<std::vector<int>> components(int vertices, const std::vector<Element
 std::vector<std::vector<int>> tet_components(const TetMesh& mesh) { return components(mesh.vertex_count(), mesh.tets); }
 
 std::vector<std::vector<int>> element_components(const TetMesh& mesh) {
+  if (mesh.element_count() == mesh.tet_count()) return tet_components(mesh);
   std::vector<std::vector<int>> corners;
   for (const Tet& tet : mesh.tets) corners.emplace_back(tet.begin(), tet.end());
   for (const Triangle& triangle : mesh.sheet) corners.emplace_back(triangle.begin(), triangle.end());

@@ -129,6 +129,7 @@ std::string size_text(const TetMesh& mesh) {
 void append(const TetMesh& body, TetMesh& all) {
   const int offset = all.vertex_count(), first_tet = all.tet_count();
   all.rest.insert(all.rest.end(), body.rest.begin(), body.rest.end());
+  all.tets.reserve(all.tets.size() + body.tets.size());
   for (const Tet& t : body.tets) all.tets.push_back({t[0] + offset, t[1] + offset, t[2] + offset, t[3] + offset});
   append_mids(body, {first_tet, offset}, all);
   append_pattern(body, all);

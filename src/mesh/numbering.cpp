@@ -86,6 +86,7 @@ void Renumbering::append(int count, const Renumbering& part, int more) {
       std::iota(ours.begin(), ours.end(), 0);
     }
     ASPIC_CHECK(static_cast<int>(ours.size()) == count && (theirs.empty() || static_cast<int>(theirs.size()) == more));
+    ours.reserve(ours.size() + static_cast<size_t>(more));
     for (int i = 0; i < more; ++i) ours.push_back(count + (theirs.empty() ? i : theirs[i]));
   };
   extend(user_, part.user_);

@@ -43,8 +43,9 @@ std::vector<double> shear_moduli(PlacedBody& body, Value& scene, const FieldScop
     throw error_at(
         scene["ratio"].place,
         "ratio: body '" + body.name() + "' has elastic = false, so its shear modulus " + "is 0; set `shear` instead");
+  const std::vector<MaterialParameters> parameters = elastic.parameters();
   for (int t = 0; t < body.mesh.tet_count(); ++t)
-    shear[t] *= elastic.parameters()[body.numbering.tet.from_user(t)].lame.mu;
+    shear[t] *= parameters[body.numbering.tet.from_user(t)].lame.mu;
   return shear;
 }
 

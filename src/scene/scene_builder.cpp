@@ -326,6 +326,7 @@ void mark_version(Table& document, std::vector<std::string>& notes) {
 
 void export_moduli(std::span<const MaterialParameters> parameters, Model& model) {
   if (model.tet_fields.empty()) model.tet_fields = {{"young", {}}, {"poisson", {}}};
+  for (auto& [name, values] : model.tet_fields) values.reserve(values.size() + parameters.size());
   for (const MaterialParameters& p : parameters) {
     const bool elastic = p.lame.mu > 0;
     model.tet_fields[0].second.push_back(elastic ? young_modulus(p.lame) : 0);
