@@ -30,22 +30,20 @@ std::vector<int> groups_by_color(std::span<const int> color) {
 
 }  // namespace
 
-// A block is column-major. Its rows are laid out like a vector; a 3x3 block omits the unused lane.
+// A block is column-major, without gaps: unused lanes of a vector hold values of the next column.
 template <int B>
 struct GaussSeidel::Kernel {
   using Vector = Lanes<float, kFloatsPerRow * B>;
   static constexpr int kSize = 3 * B, kFloats = kFloatsPerRow * B;
-  static constexpr int kColumn = B == 1 ? 3 : kFloats;  // offset between columns
-  static constexpr int64_t kBlock = kSize * kColumn;    // floats of a block
-  static constexpr int lane(int i) { return i / 3 * kFloatsPerRow + i % 3; }
+  static constexpr int64_t kBlock = kSize * kSize;  // floats of a block
 
   static Vector product(const float* A, const float* x) {
-    Vector even = Vector::load(A) * Vector::all(x[0]), odd = Vector::load(A + kColumn) * Vector::all(x[1]);
+    Vector even = Vector::load(A) * Vector::all(x[0]), odd = Vector::load(A + kSize) * Vector::all(x[1]);
     for (int j = 2; j + 1 < kSize; j += 2) {
-      even += Vector::load(A + kColumn * j) * Vector::all(x[lane(j)]);
-      odd += Vector::load(A + kColumn * (j + 1)) * Vector::all(x[lane(j + 1)]);
+      even += Vector::load(A + kSize * j) * Vector::all(x[j]);
+      odd += Vector::load(A + kSize * (j + 1)) * Vector::all(x[j + 1]);
     }
-    if (kSize % 2 == 1) even += Vector::load(A + kColumn * (kSize - 1)) * Vector::all(x[lane(kSize - 1)]);
+    if (kSize % 2 == 1) even += Vector::load(A + kSize * (kSize - 1)) * Vector::all(x[kSize - 1]);
     return even + odd;
   }
 
@@ -81,7 +79,7 @@ struct GaussSeidel::Kernel {
   using Dense = Eigen::Matrix<double, kSize, kSize>;
   static void write(const Dense& A, float* to) {
     for (int j = 0; j < kSize; ++j)
-      for (int i = 0; i < kSize; ++i) to[kColumn * j + (B == 1 ? i : lane(i))] = static_cast<float>(A(i, j));
+      for (int i = 0; i < kSize; ++i) to[kSize * j + i] = static_cast<float>(A(i, j));
   }
 
   static Dense own_block(const BlockSparse& H, int v) {
@@ -115,9 +113,9 @@ struct GaussSeidel::Kernel {
         for (int n = 0; n < B; ++n) {
           const double* from = H.block[slot + start[row + m] - start[row] + n].a;
           if (is_transposed)
-            copy_block<true>(from, to + 3 * kColumn * m + kFloatsPerRow * n);
+            copy_block<true>(from, to + 3 * kSize * m + 3 * n);
           else
-            copy_block<false>(from, to + 3 * kColumn * n + kFloatsPerRow * m);
+            copy_block<false>(from, to + 3 * kSize * n + 3 * m);
         }
     }
   }
@@ -126,7 +124,7 @@ struct GaussSeidel::Kernel {
   static void copy_block(const double* from, float* to) {
     for (int c = 0; c < 3; ++c)
       for (int r = 0; r < 3; ++r)
-        to[kColumn * c + r] = static_cast<float>(kTransposed ? from[c + 3 * r] : from[r + 3 * c]);
+        to[kSize * c + r] = static_cast<float>(kTransposed ? from[c + 3 * r] : from[r + 3 * c]);
   }
 };
 
@@ -250,15 +248,17 @@ void GaussSeidel::residual_after_forward(const float* x, float* r) const {
   });
 }
 
-void GaussSeidel::multiply(const float* x, float* y) const {
+void GaussSeidel::multiply_after_backward(const float* b, float* before, const float* x, float* y) const {
   with_kernel([&](auto kernel) {
+    using Vector = typename decltype(kernel)::Vector;
+    const auto at = [&](int v) { return kernel.kFloats * static_cast<int64_t>(v); };
     for_each_task(true, [&](const Range& range) {
-      for (int v = range.first; v < range.last; ++v) {
-        const int64_t at = kernel.kFloats * static_cast<int64_t>(v);
-        (kernel.product(&own_[kernel.kBlock * v], x + at) + kernel.row_product(lower_, v, x) +
-         kernel.row_product(upper_, v, x))
-            .store(y + at);
-      }
+      for (int v = range.first; v < range.last; ++v)
+        (Vector::load(before + at(v)) - Vector::load(x + at(v))).store(before + at(v));
+    });
+    for_each_task(true, [&](const Range& range) {
+      for (int v = range.first; v < range.last; ++v)
+        (Vector::load(b + at(v)) - kernel.row_product(lower_, v, before)).store(y + at(v));
     });
   });
 }

@@ -9,7 +9,8 @@
 
 namespace aspic {
 
-// Vectors hold kFloatsPerRow floats per row, in the order of the visit; the last of each is unused.
+// Vectors hold kFloatsPerRow floats per row, in the order of the visit: those of a vertex are the entries of its rows,
+// then unused ones.
 inline constexpr int kFloatsPerRow = 4;
 
 class GaussSeidel {
@@ -33,7 +34,8 @@ class GaussSeidel {
   void sweep_forward(const float* b, float* x) const;           // (L + D) x = b
   void sweep_backward(const float* b, float* x) const;          // (D + U) x = b - L x
   void residual_after_forward(const float* x, float* r) const;  // r = b - H x = -U x
-  void multiply(const float* x, float* y) const;                // y = H x
+  // y = H x = b - L (before - x), for the x of a backward sweep from `before`, which this overwrites with before - x.
+  void multiply_after_backward(const float* b, float* before, const float* x, float* y) const;
 
  private:
   struct Triangle {

@@ -83,10 +83,17 @@ std::vector<int> inverse_permutation(std::span<const int> order) {
 
 using QuadF = Quad<float>;
 
-std::pair<size_t, size_t> floats_of_group(const GaussSeidel& smoother, int group) {
+constexpr int kCoarseRows = 4, kCoarseEntries = 3 * kCoarseRows;  // per vertex of a coarse level
+constexpr int kCoarseFloats = kFloatsPerRow * kCoarseRows;
+
+// Calls visit(row, place) for the rows of the vertices of a group, numbered in the order of the visit, and the place of
+// their first entries in a vector.
+template <class Visit>
+void for_each_row(const GaussSeidel& smoother, int group, const Visit& visit) {
   const auto [first, last] = smoother.vertices_of_group(group);
-  const size_t floats = static_cast<size_t>(kFloatsPerRow) * smoother.rows_per_vertex();
-  return {first * floats, last * floats};
+  const size_t rows = static_cast<size_t>(smoother.rows_per_vertex());
+  for (size_t v = first; v < static_cast<size_t>(last); ++v)
+    for (size_t m = 0; m < rows; ++m) visit(rows * v + m, kFloatsPerRow * rows * v + 3 * m);
 }
 
 template <class Body>
@@ -104,13 +111,13 @@ void for_each_entry(std::span<const float> v, const Body& body) {
   });
 }
 
-// Ignores the unused lanes.
+// The inner product of vectors of a coarse level.
 double dot(std::span<const float> a, std::span<const float> b) {
-  static_assert(kChunkSize % kFloatsPerRow == 0);
+  static_assert(kChunkSize % kCoarseFloats == 0);
   return parallel_sum(static_cast<int>(a.size()), [&](int first, int last) {
     double sum = 0;
-    for (int i = first; i < last; i += kFloatsPerRow)
-      for (int k = i; k < i + 3; ++k) sum += static_cast<double>(a[k]) * b[k];
+    for (int i = first; i < last; i += kCoarseFloats)
+      for (int k = i; k < i + kCoarseEntries; ++k) sum += static_cast<double>(a[k]) * b[k];
     return sum;
   });
 }
@@ -181,7 +188,7 @@ void Multigrid::reserve_vectors(Level& level, int rows, int first_steps) {
   const std::vector<float> zero(kFloatsPerRow * static_cast<size_t>(rows), 0.0F);
   level.b = level.x = level.r = zero;
   if (levels_.size() == 1) return;
-  level.sum = zero;
+  level.sum = level.before = zero;
   level.directions.assign(levels_.size() == 2 ? first_steps : kSteps, {zero, zero});
 }
 
@@ -254,11 +261,17 @@ void Multigrid::cycle(int l) {
   Level& level = levels_[l];
   const bool is_last = l + 1 == static_cast<int>(levels_.size());
   level.smoother.sweep_forward(level.b.data(), level.x.data());
-  if (!level.coarse) return level.smoother.sweep_backward(level.b.data(), level.x.data());
+  if (!level.coarse) return sweep_backward(l);
   level.smoother.residual_after_forward(level.x.data(), level.r.data());
   restrict_residual(level, is_last ? coarsest_b_ : levels_[l + 1].b);
   solve(l + 1);
   add_prolonged(is_last ? coarsest_x_ : levels_[l + 1].x, level);
+  sweep_backward(l);
+}
+
+void Multigrid::sweep_backward(int l) {
+  Level& level = levels_[l];
+  if (l > 0) level.before = level.x;
   level.smoother.sweep_backward(level.b.data(), level.x.data());
 }
 
@@ -270,13 +283,13 @@ void Multigrid::solve(int l) {
   std::fill(level.sum.begin(), level.sum.end(), 0.0F);
   for (size_t k = 0; k < level.directions.size(); ++k) {
     cycle(l);
+    Direction& d = level.directions[k];
+    level.smoother.multiply_after_backward(b.data(), level.before.data(), x.data(), d.q.data());
     for (size_t m = 0; m < k; ++m) {
       const Direction& before = level.directions[m];
       const float beta = static_cast<float>(dot(x, before.q) / before.pq);
-      for_each_entry(x, [&](int i) { x[i] -= beta * before.p[i]; });
+      for_each_entry(x, [&](int i) { x[i] -= beta * before.p[i], d.q[i] -= beta * before.q[i]; });
     }
-    Direction& d = level.directions[k];
-    level.smoother.multiply(x.data(), d.q.data());
     d.pq = dot(x, d.q);
     if (!(d.pq > 0) && k == 0) return;
     if (!(d.pq > 0)) break;
@@ -290,34 +303,38 @@ void Multigrid::solve(int l) {
 
 void Multigrid::restrict_residual(const Level& level, std::span<float> coarse_b) const {
   for_each_aggregate(level.coarsening.count(), [&](int a) {
-    QuadF sum[4] = {QuadF::zero(), QuadF::zero(), QuadF::zero(), QuadF::zero()};
-    const auto [first, last] = floats_of_group(level.smoother, a);
-    for (size_t k = first; k < last; k += kFloatsPerRow)
-      for (int m = 0; m < 4; ++m) sum[m] += QuadF::all(level.weight[k + m]) * QuadF::load(&level.r[k]);
-    float* to = &coarse_b[4 * kFloatsPerRow * static_cast<size_t>(level.coarse_place[a])];
-    for (int m = 0; m < 4; ++m) sum[m].store(to + kFloatsPerRow * m);
+    QuadF sum[kCoarseRows] = {QuadF::zero(), QuadF::zero(), QuadF::zero(), QuadF::zero()};
+    for_each_row(level.smoother, a, [&](size_t row, size_t place) {
+      const QuadF r = QuadF::load(&level.r[place]);
+      for (int m = 0; m < kCoarseRows; ++m) sum[m] += QuadF::all(level.weight[kCoarseRows * row + m]) * r;
+    });
+    float* to = &coarse_b[kCoarseFloats * static_cast<size_t>(level.coarse_place[a])];
+    for (int m = 0; m < kCoarseRows; ++m) sum[m].store(to + 3 * m);  // the next one replaces the unused lane
   });
 }
 
 void Multigrid::add_prolonged(std::span<const float> coarse_x, Level& level) const {
+  const QuadF used = {QuadF::Values{1, 1, 1, 0}};
   for_each_aggregate(level.coarsening.count(), [&](int a) {
-    const float* from = &coarse_x[4 * kFloatsPerRow * static_cast<size_t>(level.coarse_place[a])];
-    const auto [first, last] = floats_of_group(level.smoother, a);
-    for (size_t k = first; k < last; k += kFloatsPerRow) {
-      QuadF sum = QuadF::load(&level.x[k]);
-      for (int m = 0; m < 4; ++m) sum += QuadF::all(level.weight[k + m]) * QuadF::load(from + kFloatsPerRow * m);
-      sum.store(&level.x[k]);
-    }
+    const float* x = &coarse_x[kCoarseFloats * static_cast<size_t>(level.coarse_place[a])];
+    QuadF from[kCoarseRows];
+    for (int m = 0; m < kCoarseRows; ++m) from[m] = used * QuadF::load(x + 3 * m);
+    for_each_row(level.smoother, a, [&](size_t row, size_t place) {
+      QuadF sum = QuadF::load(&level.x[place]);
+      for (int m = 0; m < kCoarseRows; ++m) sum += QuadF::all(level.weight[kCoarseRows * row + m]) * from[m];
+      sum.store(&level.x[place]);
+    });
   });
 }
 
 void Multigrid::solve_coarsest() {
   const int n = 3 * static_cast<int>(coarsest_b_.size() / kFloatsPerRow);
-  const auto lane = [](int i) { return kFloatsPerRow * static_cast<size_t>(i / 3) + i % 3; };
-  for (int i = 0; i < n; ++i) coarsest_[i] = coarsest_b_[lane(i)];
+  const int entries = levels_.empty() ? 3 : kCoarseEntries, floats = levels_.empty() ? kFloatsPerRow : kCoarseFloats;
+  const auto place = [&](int i) { return static_cast<size_t>(floats) * (i / entries) + i % entries; };
+  for (int i = 0; i < n; ++i) coarsest_[i] = coarsest_b_[place(i)];
   solve_forward(factor_.data(), n, n, coarsest_.data(), nullptr);
   solve_backward(factor_.data(), n, n, coarsest_.data(), nullptr);
-  for (int i = 0; i < n; ++i) coarsest_x_[lane(i)] = static_cast<float>(coarsest_[i]);
+  for (int i = 0; i < n; ++i) coarsest_x_[place(i)] = static_cast<float>(coarsest_[i]);
 }
 
 std::string Multigrid::description() const {

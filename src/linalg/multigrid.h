@@ -51,6 +51,7 @@ class Multigrid : public ApproximateInverse {
     std::vector<int> coarse_place;        // place of each aggregate in the order of the next level
     std::vector<float> b, x;              // right-hand side and solution of H x = b
     std::vector<float> r;                 // b - H x
+    std::vector<float> before;            // x before the last sweep
     std::vector<Direction> directions;    // search directions of the K-cycle
     std::vector<float> sum;               // partial solution of the K-cycle
   };
@@ -59,6 +60,7 @@ class Multigrid : public ApproximateInverse {
   void reserve_vectors(Level& level, int rows, int first_steps);
   void connect_levels();
   void cycle(int l);  // one cycle for H x = b from x = 0
+  void sweep_backward(int l);
   void solve(int l);
   void restrict_residual(const Level& level, std::span<float> coarse_b) const;
   void add_prolonged(std::span<const float> coarse_x, Level& level) const;
