@@ -15,6 +15,7 @@
 #include "aspic/summary.h"
 #include "aspic/sweep/outcome.h"
 #include "base/error.h"
+#include "base/free_memory.h"
 #include "base/parallel.h"
 #include "base/printable.h"
 #include "base/stop_token.h"
@@ -257,6 +258,7 @@ int run(const RunArguments& arguments) {
   if (arguments.time_limit > 0) stop = stop.with_deadline(clock, arguments.time_limit);
   if (arguments.threads > 0) set_thread_count(arguments.threads);
   landscapes(arguments);  // throws for bad input before anything is written
+  keep_freed_memory();
   Scene scene = load(arguments);
   const int last_step = arguments.steps > 0 ? arguments.steps : scene.steps;
   if (arguments.continues && is_complete(directory_to_resume(arguments), scene, last_step))

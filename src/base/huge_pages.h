@@ -4,13 +4,15 @@
 #include <cstddef>
 #include <cstdlib>
 #include <new>
+#include <utility>
 #include <vector>
 
 namespace aspic {
 
 void* allocate_huge_pages(size_t bytes);  // throws std::bad_alloc; to be freed by std::free
 
-// An allocator for std::vector. Small arrays are allocated as usual.
+// An allocator for std::vector. Small arrays are allocated as usual. New elements without a value are uninitialized, so
+// that the threads that write them first also wait for their pages.
 template <class T>
 struct HugePages {
   using value_type = T;
@@ -29,6 +31,13 @@ struct HugePages {
       std::free(memory);
     else
       ::operator delete(memory, std::align_val_t(alignof(T)));
+  }
+  template <class U, class... Arguments>
+  void construct(U* element, Arguments&&... arguments) {
+    if constexpr (sizeof...(Arguments) == 0)
+      ::new (static_cast<void*>(element)) U;
+    else
+      ::new (static_cast<void*>(element)) U(std::forward<Arguments>(arguments)...);
   }
   bool operator==(const HugePages&) const { return true; }
 };

@@ -58,7 +58,7 @@ struct BlockSparse {
   LargeVector<Mat3d> block;       // one per entry of pattern->column
   std::vector<Stencil> stencils;  // added to the matrix; their pattern may change
 
-  explicit BlockSparse(const BlockPattern& p) : pattern(&p), block(p.block_count()) {}
+  explicit BlockSparse(const BlockPattern& p) : pattern(&p), block(p.block_count()) { set_zero(); }
   void set_zero();                                                      // removes the stencils
   void multiply(std::span<const double> x, std::span<double> y) const;  // y = H x; x, y: 3 entries per row
 };

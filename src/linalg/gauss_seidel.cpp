@@ -203,8 +203,13 @@ void GaussSeidel::analyze(const BlockPattern& p, int rows_per_vertex, std::span<
     for (Triangle* t : {&lower_, &upper_}) t->start.push_back(static_cast<int64_t>(t->column.size()));
   }
   with_kernel([&](auto kernel) {
-    for (Triangle* t : {&lower_, &upper_}) t->value.assign(kernel.kBlock * t->column.size() + kSpareLanes, 0.0F);
-    for (auto* v : {&own_, &inverse_}) v->assign(kernel.kBlock * static_cast<size_t>(vertices) + kSpareLanes, 0.0F);
+    // load() writes all blocks
+    const auto reserve = [&](LargeVector<float>& values, size_t blocks) {
+      values.resize(kernel.kBlock * blocks + kSpareLanes);
+      std::fill(values.end() - kSpareLanes, values.end(), 0.0F);
+    };
+    for (Triangle* t : {&lower_, &upper_}) reserve(t->value, t->column.size());
+    for (LargeVector<float>* v : {&own_, &inverse_}) reserve(*v, static_cast<size_t>(vertices));
   });
 }
 
