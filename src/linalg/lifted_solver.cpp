@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "base/check.h"
 #include "base/parallel.h"
@@ -18,22 +19,6 @@ double along(const StiffRow& row, std::span<const double> x) {  // g . x
   double sum = 0;
   for (size_t n = 0; n < row.vertex.size(); ++n) sum += dot(row.g[n], vec_at(x, row.vertex[n]));
   return sum;
-}
-
-void add(const StiffRow& row, double factor, std::span<double> x) {  // x += factor g
-  for (size_t n = 0; n < row.vertex.size(); ++n) add_vec(factor * row.g[n], row.vertex[n], x);
-}
-
-// Subtracts weight g g' from the blocks.
-void subtract(const StiffRow& row, BlockSparse& A) {
-  for (size_t n = 0; n < row.vertex.size(); ++n)
-    for (size_t m = 0; m < row.vertex.size(); ++m) {
-      const int high = row.vertex[n], low = row.vertex[m];
-      if (low > high) continue;
-      Mat3d& block = A.block[A.pattern->slot(high, low)];
-      for (int c = 0; c < 3; ++c)
-        for (int r = 0; r < 3; ++r) block(r, c) -= row.weight * (row.g[n][r] * row.g[m][c]);
-    }
 }
 
 double mean_diagonal(const BlockSparse& A) {
@@ -58,12 +43,70 @@ struct Rotation {
 
 }  // namespace
 
+void LiftedSolver::find_uses() {
+  const BlockPattern& p = *H_->pattern;
+  const auto is_same = [](const StiffRow& row, const auto& vertices) { return row.vertex == vertices; };
+  if (version_ == p.version && std::equal(rows_->begin(), rows_->end(), vertices_.begin(), vertices_.end(), is_same))
+    return;
+  version_ = p.version;
+  vertices_.clear();
+  use_start_.assign(static_cast<size_t>(p.rows()) + 1, 0);
+  for (const StiffRow& row : *rows_) {
+    vertices_.push_back(row.vertex);
+    for (const int v : row.vertex) ++use_start_[v + 1];
+  }
+  std::partial_sum(use_start_.begin(), use_start_.end(), use_start_.begin());
+  uses_.resize(static_cast<size_t>(use_start_.back()));
+  slots_.resize(uses_.size());
+  std::vector<int> next(use_start_.begin(), use_start_.end() - 1);
+  for (size_t e = 0; e < rows(); ++e)
+    for (size_t n = 0; n < vertices_[e].size(); ++n)
+      uses_[next[vertices_[e][n]]++] = {static_cast<int>(e), static_cast<int>(n), {}};
+  parallel_chunks(p.rows(), [&](int first, int last) {
+    for (int v = first; v < last; ++v)
+      for (int u = use_start_[v]; u < use_start_[v + 1]; ++u)
+        for (size_t m = 0; m < slots_[u].size(); ++m) {
+          const int low = vertices_[uses_[u].row][m];
+          slots_[u][m] = low > v ? -1 : p.slot(v, low);
+        }
+  });
+}
+
+template <class Visit>
+void LiftedSolver::for_each_row(const Visit& visit) const {
+  parallel_chunks(static_cast<int>(rows()), [&](int first, int last) {
+    for (int e = first; e < last; ++e) visit(static_cast<size_t>(e));
+  });
+}
+
+// x += sum over rows e of factor(e) g
+template <class Factor>
+void LiftedSolver::add_rows(const Factor& factor, std::span<double> x) {
+  for_each_row([&](size_t e) { factor_[e] = factor(e); });
+  parallel_chunks(static_cast<int>(use_start_.size()) - 1, [&](int first, int last) {
+    for (int v = first; v < last; ++v)
+      for (int u = use_start_[v]; u < use_start_[v + 1]; ++u) add_vec(factor_[uses_[u].row] * uses_[u].g, v, x);
+  });
+}
+
 const BlockSparse& LiftedSolver::separate(const BlockSparse& H, const StiffRows& rows) {
   H_ = &H, rows_ = &rows;
   if (!A_ || A_->pattern != H.pattern) A_.emplace(*H.pattern);
   A_->block = H.block;
   A_->stencils = H.stencils;
-  for (const StiffRow& row : rows) subtract(row, *A_);
+  find_uses();
+  parallel_chunks(H.pattern->rows(), [&](int first, int last) {  // A -= weight g g'
+    for (int u = use_start_[first]; u < use_start_[last]; ++u) {
+      const StiffRow& row = rows[uses_[u].row];
+      uses_[u].g = row.g[uses_[u].place];
+      for (size_t m = 0; m < slots_[u].size(); ++m) {
+        if (slots_[u][m] < 0) continue;
+        Mat3d& block = A_->block[slots_[u][m]];
+        for (int c = 0; c < 3; ++c)
+          for (int r = 0; r < 3; ++r) block(r, c) -= row.weight * (uses_[u].g[r] * row.g[m][c]);
+      }
+    }
+  });
   const double stiffness = mean_diagonal(*A_);
   scale_.clear();
   for (const StiffRow& row : rows) scale_.push_back(std::sqrt(stiffness / (row.compliance + 1 / row.weight)));
@@ -73,32 +116,33 @@ const BlockSparse& LiftedSolver::separate(const BlockSparse& H, const StiffRows&
     for (std::vector<double>& v : *basis)
       if (v.size() != size) v.clear();
   t_.resize(size);
+  factor_.resize(rows.size());
   primal_.resize(size - rows.size()), right_.resize(size - rows.size());
   return *A_;
 }
 
 // w = [A B'; B -D^-1] z in units of scale_.
-void LiftedSolver::apply(std::span<const double> z, std::span<double> w) const {
+void LiftedSolver::apply(std::span<const double> z, std::span<double> w) {
   const size_t n = primal_.size();
   A_->multiply(z.first(n), w.first(n));
-  for (size_t e = 0; e < rows(); ++e) {
+  const auto p = [&](size_t e) { return scale_[e] * z[n + e]; };
+  add_rows(p, w.first(n));
+  for_each_row([&](size_t e) {
     const StiffRow& row = (*rows_)[e];
-    const double p = scale_[e] * z[n + e];
-    add(row, p, w.first(n));
-    w[n + e] = scale_[e] * (along(row, z.first(n)) - p / row.weight);
-  }
+    w[n + e] = scale_[e] * (along(row, z.first(n)) - p(e) / row.weight);
+  });
 }
 
 void LiftedSolver::apply_preconditioner(std::span<const double> r, std::span<double> z,
                                         const Precondition& precondition) {
   const size_t n = primal_.size();
   std::copy_n(r.begin(), n, right_.begin());
-  for (size_t e = 0; e < rows(); ++e) {
+  const auto p = [&](size_t e) {
     const StiffRow& row = (*rows_)[e];
-    const double p = -r[n + e] / scale_[e] / (row.compliance + 1 / row.weight);
-    z[n + e] = p / scale_[e];
-    add(row, -p, right_);
-  }
+    return -r[n + e] / scale_[e] / (row.compliance + 1 / row.weight);
+  };
+  for_each_row([&](size_t e) { z[n + e] = p(e) / scale_[e]; });
+  add_rows([&](size_t e) { return -p(e); }, right_);
   precondition(right_, z.first(n));
 }
 
@@ -106,7 +150,7 @@ void LiftedSolver::apply_preconditioner(std::span<const double> r, std::span<dou
 double LiftedSolver::primal_norm(std::span<const double> r, double factor) {
   const size_t n = primal_.size();
   std::copy_n(r.begin(), n, primal_.begin());
-  for (size_t e = 0; e < rows(); ++e) add((*rows_)[e], (*rows_)[e].weight * r[n + e] / scale_[e], primal_);
+  add_rows([&](size_t e) { return (*rows_)[e].weight * r[n + e] / scale_[e]; }, primal_);
   return std::abs(factor) * norm(primal_);
 }
 
@@ -159,10 +203,12 @@ bool LiftedSolver::run(Cycle& cycle, const Precondition& precondition) {
     cycle.size = j + 1;
     is_done = !(below > 0) || cycle.report.iterations >= max_iterations_;  // an exact solution, or NaN
     if (!(below > 0)) break;
-    for (size_t i = 0; i < size; ++i) {
-      w[i] /= below;
-      t_[i] = rotation.c * w[i] - rotation.s * t_[i];
-    }
+    parallel_chunks(static_cast<int>(size), [&](int first, int last) {
+      for (int i = first; i < last; ++i) {
+        w[i] /= below;
+        t_[i] = rotation.c * w[i] - rotation.s * t_[i];
+      }
+    });
     is_done = is_done || primal_norm(t_, cycle.right[j + 1]) <= cycle.target;
     cycle.report.stopped = stop_.stopped();
     is_done = is_done || cycle.report.stopped;

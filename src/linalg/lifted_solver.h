@@ -5,6 +5,8 @@
 //   p = -S^-1 r_p,   d = M^-1 (r_d - B'p),   S = D^-1 + compliance.
 // Iterations hardly depend on D.
 #pragma once
+#include <array>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
@@ -30,8 +32,20 @@ class LiftedSolver {
  private:
   struct Cycle;  // one FGMRES cycle between restarts
 
+  // A stiff row that contains a vertex.
+  struct Use {
+    int row, place;
+    Vec3d g;  // of the vertex
+  };
+  using Slots = std::array<int64_t, 10>;  // of the blocks of a vertex and those of a row; -1: above the diagonal
+
   size_t rows() const { return rows_->size(); }
-  void apply(std::span<const double> z, std::span<double> w) const;
+  void find_uses();
+  template <class Visit>
+  void for_each_row(const Visit& visit) const;
+  template <class Factor>
+  void add_rows(const Factor& factor, std::span<double> x);
+  void apply(std::span<const double> z, std::span<double> w);
   void apply_preconditioner(std::span<const double> r, std::span<double> z, const Precondition& precondition);
   double primal_norm(std::span<const double> r, double factor);  // |b - H x| for the lifted residual factor r
   bool run(Cycle& cycle, const Precondition& precondition);
@@ -40,7 +54,13 @@ class LiftedSolver {
   const BlockSparse* H_ = nullptr;
   const StiffRows* rows_ = nullptr;
   std::optional<BlockSparse> A_;
-  std::vector<double> scale_;  // unit of p, one per row: balances both equations
+  uint64_t version_ = 0;                       // pattern of uses_
+  std::vector<std::array<int, 10>> vertices_;  // of the rows of uses_
+  std::vector<int> use_start_;                 // per vertex
+  std::vector<Use> uses_;                      // ascending by row
+  std::vector<Slots> slots_;                   // per use
+  std::vector<double> factor_;                 // per row
+  std::vector<double> scale_;                  // unit of p, one per row: balances both equations
   StopToken stop_;
   int max_iterations_ = 500;
   std::vector<std::vector<double>> v_, z_;  // bases
