@@ -61,21 +61,30 @@ double predict_iterations(const BlockSparse& H, std::vector<char>& held) {
 UniformStiffness uniform_stiffness(const BlockSparse& H, int rows, std::vector<char>& held) {
   const BlockPattern& p = *H.pattern;
   find_held_rows(H, held);
-  double uniform = 0, diagonal = 0;
-  for (int row = 0; row < rows; ++row) {
-    double sum = 0;
-    bool beside_pin = held[row];
-    const auto add = [&](int64_t slot, int neighbor) {
-      sum += trace(H.block[slot]);
-      beside_pin = beside_pin || held[neighbor] || squared_norm(H.block[slot]) == 0;
-    };
-    for (int64_t s = p.row_start[row]; s < p.diagonal(row); ++s) add(s, p.column[s]);
-    for (int64_t u = p.upper_start[row]; u < p.upper_start[row + 1]; ++u) add(p.upper_slot[u], p.upper_row[u]);
-    if (beside_pin) continue;
-    const double own = trace(H.block[p.diagonal(row)]);
-    uniform += sum + own;
-    diagonal += own;
-  }
+  held.resize(2 * static_cast<size_t>(p.rows()));
+  char* const beside_pin = held.data() + p.rows();
+  const double uniform = parallel_sum(rows, [&](int first, int last) {
+    double total = 0;
+    for (int row = first; row < last; ++row) {
+      double sum = trace(H.block[p.diagonal(row)]);
+      bool is_beside = held[row];
+      const auto add = [&](int64_t slot, int neighbor) {
+        sum += trace(H.block[slot]);
+        is_beside = is_beside || held[neighbor] || squared_norm(H.block[slot]) == 0;
+      };
+      for (int64_t s = p.row_start[row]; s < p.diagonal(row); ++s) add(s, p.column[s]);
+      for (int64_t u = p.upper_start[row]; u < p.upper_start[row + 1]; ++u) add(p.upper_slot[u], p.upper_row[u]);
+      beside_pin[row] = is_beside;
+      if (!is_beside) total += sum;
+    }
+    return total;
+  });
+  const double diagonal = parallel_sum(rows, [&](int first, int last) {
+    double total = 0;
+    for (int row = first; row < last; ++row)
+      if (!beside_pin[row]) total += trace(H.block[p.diagonal(row)]);
+    return total;
+  });
   return {uniform, diagonal};
 }
 
