@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cstdlib>
+
 #include "io/atomic_file.h"
 #include "io/folder_test.h"
 
@@ -30,6 +32,7 @@ TEST_F(SceneGallery, RemembersWhatWasOpenedNewestFirst) {
   const std::filesystem::path scenes = std::filesystem::path(ASPIC_SOURCE_DIR) / "scenes";
   const auto a = scenes / "bunny.toml", b = scenes / "chute.toml";
   const RecentScenes recent(path("state/aspic/recent"));
+  ::setenv("TMPDIR", folder.path().c_str(), 1);  // the source may lie in /tmp, whose scenes are forgotten
   EXPECT_THAT(recent.read(), IsEmpty());
   recent.note(a);
   recent.note(b);
@@ -38,6 +41,7 @@ TEST_F(SceneGallery, RemembersWhatWasOpenedNewestFirst) {
   write_file(path("state/aspic/recent"), (scenes / "none.toml").string() + "\n" + b.string() + "\n");
   EXPECT_THAT(recent.read(), ElementsAre(b));
   RecentScenes(std::filesystem::path()).note(b);
+  ::unsetenv("TMPDIR");
 }
 
 TEST_F(SceneGallery, ForgetsTemporaryScenes) {

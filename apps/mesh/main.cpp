@@ -267,7 +267,7 @@ int main(int argc, char** argv) {
   try {
     std::vector<std::string> words;
     for (int i = argc - 1; i > 0; --i)  // the order that CLI11 expects
-      words.push_back(argv[i][0] == '-' && argv[i][1] == '.' ? aspic::with_leading_zeros(argv[i]) : argv[i]);
+      words.push_back(argv[i][0] == '-' && argv[i][1] == '.' ? aspic::with_zeros_beside_points(argv[i]) : argv[i]);
     app.parse(std::move(words));
     aspic::run(arguments);
     return aspic::kDone;

@@ -75,16 +75,18 @@ std::to_chars_result write(char* first, char* last, T value, int most, T (*read)
 
 }  // namespace
 
-std::string with_leading_zeros(const std::string& text) {
-  constexpr std::string_view kBefore = "-+[,= ", kAfter = "eE,]} ";
+std::string with_zeros_beside_points(const std::string& text) {
+  constexpr std::string_view kBefore = "-+[,= ", kAfter = "eE,]} ", kDigits = "0123456789";
   std::string result;
   for (size_t i = 0; i < text.size(); ++i) {
-    const bool begins = text[i] == '.' && (i == 0 || kBefore.find(text[i - 1]) != kBefore.npos);
-    const size_t end = text.find_first_not_of("0123456789", i + 1);
-    const bool is_number =
-        i + 1 < text.size() && is_digit(text[i + 1]) && (end == text.npos || kAfter.find(text[end]) != kAfter.npos);
-    if (begins && is_number) result += '0';
+    const size_t begin = i == 0 ? text.npos : text.find_last_not_of(kDigits, i - 1);  // the last character before
+    const size_t end = std::min(text.find_first_not_of(kDigits, i + 1), text.size());
+    const bool is_point = text[i] == '.' && (begin == text.npos || kBefore.find(text[begin]) != kBefore.npos) &&
+                          (end == text.size() || kAfter.find(text[end]) != kAfter.npos);
+    const bool has_digits_before = i > 0 && begin != i - 1, has_digits_after = end > i + 1;
+    if (is_point && !has_digits_before && has_digits_after) result += '0';
     result += text[i];
+    if (is_point && has_digits_before && !has_digits_after) result += '0';
   }
   return result;
 }

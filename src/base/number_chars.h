@@ -12,8 +12,8 @@ std::from_chars_result read_number(const char* first, const char* last, double& 
 std::to_chars_result write_number(char* first, char* last, double value);
 std::to_chars_result write_number(char* first, char* last, float value);
 
-// Writes the zero before points that begin a number: "[-.5, 1]" becomes "[-0.5, 1]".
-std::string with_leading_zeros(const std::string& text);
+// Writes the zero before points that begin a number and after points that end one: "[-.5, 1.]" becomes "[-0.5, 1.0]".
+std::string with_zeros_beside_points(const std::string& text);
 
 // As std::from_chars.
 template <class T>

@@ -95,11 +95,13 @@ TEST(NumberChars, ReadsLikeTheStandardLibrary) {
   }
 }
 
-TEST(NumberChars, PointsThatBeginANumberGetAZero) {
-  EXPECT_EQ(with_leading_zeros("-.5,.25,1.5"), "-0.5,0.25,1.5");
-  EXPECT_EQ(with_leading_zeros("[.1, +.2e-3]"), "[0.1, +0.2e-3]");
-  for (const char* text : {".", "./.5.obj", "a.5", "1..5", ".5.obj", "-", ""})
-    EXPECT_EQ(with_leading_zeros(text), text);
+TEST(NumberChars, PointsBesideOneDigitGetAZero) {
+  EXPECT_EQ(with_zeros_beside_points("-.5,.25,1.5"), "-0.5,0.25,1.5");
+  EXPECT_EQ(with_zeros_beside_points("[.1, +.2e-3]"), "[0.1, +0.2e-3]");
+  EXPECT_EQ(with_zeros_beside_points("[5., -10.]"), "[5.0, -10.0]");
+  EXPECT_EQ(with_zeros_beside_points("1.e-3"), "1.0e-3");
+  for (const char* text : {".", "./.5.obj", "a.5", "1..5", ".5.obj", "part5.", "5.obj", "1.2.", "2.*X", "-", ""})
+    EXPECT_EQ(with_zeros_beside_points(text), text);
 }
 
 }  // namespace

@@ -522,7 +522,9 @@ MeshErrorEstimate estimate_mesh_error(const MeshErrorInput& input, const StopTok
   if (!input.model.share.is_whole()) {
     none.reason = "the mesh is distributed over processes";
   } else if (!input.model.mesh.mids.empty()) {
-    none.reason = "order = 2 (its error is 0 to 4 % with two tets across, more with one)";
+    none.reason =
+        "order = 2; quadratic tets are the reference of the estimate (their error is 0 to 4 % with two tets across, "
+        "more with one)";
   } else if (!input.model.mesh.sheet.empty()) {
     none.reason = "the scene has sheets";
   } else if (!input.model.mesh.rods.empty()) {

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "base/number_chars.h"
 #include "base/printable.h"
 #include "io/base64.h"
 #include "io/byte_cursor.h"
@@ -46,6 +47,20 @@ bool is_appearance(const std::string& extension) {
   for (const char* prefix : {"KHR_materials_", "KHR_texture_", "KHR_lights_", "EXT_texture_"})
     if (extension.starts_with(prefix)) return true;
   return false;
+}
+
+// "my%20mesh.bin" -> "my mesh.bin"
+std::string percent_decoded(std::string_view uri) {
+  std::string name;
+  for (size_t i = 0; i < uri.size(); ++i) {
+    int code = 0;
+    const char* digits = uri.data() + i + 1;
+    const bool is_coded =
+        uri[i] == '%' && i + 2 < uri.size() && from_chars(digits, digits + 2, code, 16).ptr == digits + 2;
+    name += is_coded ? static_cast<char>(code) : uri[i];
+    if (is_coded) i += 2;
+  }
+  return name;
 }
 
 std::string_view chunk(ByteCursor& bytes, std::string_view contents, uint32_t type) {
@@ -149,10 +164,11 @@ void GltfFile::read_buffers(const ReadBeside& read_beside) {
 
 std::string GltfFile::bytes_of(std::string_view uri, const std::string& owner, const ReadBeside& read_beside) const {
   if (!uri.starts_with("data:")) {
-    if (uri.empty() || uri[0] == '/' || uri.find("..") != uri.npos || uri.find_first_of(":\\") != uri.npos ||
-        uri.find('\0') != uri.npos)
+    const std::string name = percent_decoded(uri);
+    if (name.empty() || name[0] == '/' || name.find("..") != name.npos || name.find_first_of(":\\") != name.npos ||
+        name.find('\0') != name.npos)
       fail("uri of " + owner + " is no name of a file beside this one");
-    return read_beside(std::string(uri));
+    return read_beside(name);
   }
   constexpr std::string_view kMark = ";base64,";
   const size_t mark = uri.find(kMark);
@@ -160,6 +176,16 @@ std::string GltfFile::bytes_of(std::string_view uri, const std::string& owner, c
   if (mark != uri.npos) uri.remove_prefix(mark + kMark.size());
   if (mark == uri.npos || !decode_base64(uri, SIZE_MAX, bytes)) fail("the data of " + owner + " are no Base64");
   return bytes;
+}
+
+std::string GltfFile::self_contained() const {
+  Json root = root_;
+  for (size_t i = 0; i < buffers_.size(); ++i) {
+    std::string uri = "data:application/octet-stream;base64,";
+    append_base64(buffers_[i], uri);
+    root["buffers"][i]["uri"] = std::move(uri);
+  }
+  return root.dump();
 }
 
 GltfFile::View GltfFile::view(uint64_t index) const {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "io/atomic_file.h"
 #include "io/gltf_animation.h"
 #include "io/vertex_merger.h"
 
@@ -251,6 +252,18 @@ class GltfSurface {
 };
 
 }  // namespace
+
+std::string read_self_contained(const std::filesystem::path& path) {
+  std::string contents = read_file(path);
+  const std::string extension = path.extension().string();
+  if (extension != ".gltf" && extension != ".GLTF" && extension != ".glb" && extension != ".GLB") return contents;
+  bool has_others = false;
+  const GltfFile gltf(path.string(), contents, [&](const std::string& name) {
+    has_others = true;
+    return read_file(path.parent_path() / name);
+  });
+  return has_others ? gltf.self_contained() : contents;
+}
 
 MeshContent parse_gltf(const std::string& file, std::string_view contents, const ReadBeside& read_beside) {
   GltfFile gltf(file, contents, read_beside);

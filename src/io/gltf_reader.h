@@ -1,6 +1,7 @@
 // Reads the triangles of glTF 2.0, as .glb or .gltf [Khronos], and their animation: the meshes of the default scene,
 // placed by their nodes or, with a skin, by its joints.
 #pragma once
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -12,6 +13,10 @@ namespace aspic {
 
 // Returns the bytes of a file beside the .gltf. Throws InvalidInput.
 using ReadBeside = std::function<std::string(const std::string& name)>;
+
+// Returns the contents of a file of any format; a glTF file that names buffers beside it then contains them. Pictures,
+// which nothing reads, stay outside. Throws InvalidInput.
+std::string read_self_contained(const std::filesystem::path& path);
 
 // Vertices of a node at the same position become one, since glTF repeats them along edges of normals and textures.
 // Morph targets and animations are ignored. Throws InvalidInput.

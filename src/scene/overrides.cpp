@@ -33,7 +33,9 @@ Value value_of(const std::string& text, const std::string& source) {
   try {
     return read_toml_value(text, source);
   } catch (const InvalidInput&) {
-    if (const std::string spelled = with_leading_zeros(text); spelled != text) return value_of(spelled, source);
+    if (const std::string spelled = with_zeros_beside_points(text); spelled != text) {
+      if (Value number = value_of(spelled, source); !number.is_text()) return number;
+    }
     if (text.find_first_of("\"'[{") == 0) throw;
     return {text, {std::make_shared<const std::string>(source), 0, 0}};  // a bare word or formula
   }
@@ -146,7 +148,7 @@ std::vector<std::string> spread_assignments(const std::vector<std::string>& argu
     if (follows_one && is_assignment(arguments[i])) result.emplace_back("--set");
     const bool is_value = i > 0 && arguments[i - 1] == "--set";
     follows_one = is_value || arguments[i].starts_with("--set=") || (follows_one && is_assignment(arguments[i]));
-    result.push_back(arguments[i].starts_with("-.") ? with_leading_zeros(arguments[i]) : arguments[i]);
+    result.push_back(arguments[i].starts_with("-.") ? with_zeros_beside_points(arguments[i]) : arguments[i]);
   }
   return result;
 }

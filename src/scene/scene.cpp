@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "io/atomic_file.h"
+#include "io/gltf_reader.h"
 #include "io/mesh_file.h"
 #include "scene/mesh_scene.h"
 #include "scene/scene_builder.h"
@@ -19,7 +20,7 @@ namespace fs = std::filesystem;
 void copy_file(const fs::path& source, const fs::path& target) {
   std::error_code error;
   if (fs::equivalent(source, target, error)) return;
-  write_file(target, read_file(source));
+  write_file(target, read_self_contained(source));
 }
 
 }  // namespace

@@ -194,12 +194,16 @@ TEST(Override, ReplacesAlternatives) {
   EXPECT_TRUE(document.find("body")->array()[0].table().find("mesh"));
 }
 
-TEST(Override, NumbersNeedNoLeadingZero) {
+TEST(Override, NumbersNeedNoZerosBesideThePoint) {
   Table document;
   apply_override(document, "time.step=.01");
   apply_override(document, "gravity=[0, -.5, +.25]");
   EXPECT_EQ(document.find("time")->table().find("step")->number(), 0.01);
   EXPECT_EQ(document.find("gravity")->vector()[1], -0.5);
+  apply_override(document, "time.step=5.");
+  apply_override(document, "time.integrator=2.e");
+  EXPECT_EQ(document.find("time")->table().find("step")->number(), 5);
+  EXPECT_EQ(document.find("time")->table().find("integrator")->text(), "2.e");
   EXPECT_EQ(spread_assignments({"--start", "-.5,1", "-o"}), (std::vector<std::string>{"--start", "-0.5,1", "-o"}));
   EXPECT_THAT(document_refusal("[time]\nstep = .01\n"), HasSubstr("write digits before and after the point"));
 }

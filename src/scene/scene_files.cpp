@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "io/atomic_file.h"
+#include "io/gltf_reader.h"
 
 namespace aspic {
 namespace {
@@ -47,7 +47,7 @@ std::string fingerprint_of(const TetMesh& mesh) {
 }
 
 std::string fingerprint_of_file(const fs::path& path) {
-  const std::string bytes = read_file(path);
+  const std::string bytes = read_self_contained(path);
   Fingerprint hash;
   hash.add(bytes.data(), bytes.size());
   return hash.text();

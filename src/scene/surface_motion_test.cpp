@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "io/base64.h"
 #include "io/folder_test.h"
 #include "io/mesh_examples_test.h"
 #include "io/mesh_file.h"
@@ -79,6 +80,24 @@ TEST(SurfaceMotion, PinsFollowTheJointsOfAGltfFile) {
   const Pin& pin = scene.simulation.model().pins[0];
   EXPECT_LT(distance(pin.motion({{0, 0, 0}}, 1), {{0, 0, 5}}), kSingle);
   EXPECT_LT(distance(pin.motion({{1, 1, 0}}, 1), {{1.5, 1.5, 5}}), 1e-6);
+}
+
+TEST(SurfaceMotion, ResultsOfAGltfFileHoldItsBuffer) {
+  const TestFolder folder;
+  const std::string text = gltf_arm(), mark = "data:application/octet-stream;base64,";
+  const size_t begin = text.find(mark), end = text.find('"', begin);
+  std::string bytes;
+  std::string_view coded = std::string_view(text).substr(begin + mark.size(), end - begin - mark.size());
+  ASSERT_TRUE(decode_base64(coded, SIZE_MAX, bytes));
+  folder.write("the arm.bin", bytes);
+  folder.write("arm.gltf", text.substr(0, begin) + "the%20arm.bin" + text.substr(end));
+  const Scene scene = cube_with(folder,
+                                "[[body.pin]]\nwhere = \"z < 0.1\"\nmotion = { recording = { file = \"arm.gltf\", "
+                                "mesh = \"arm.gltf\", fps = 10 } }\n");
+  write_inputs(scene, folder / "run");
+  folder.write("run/scene.toml", scene.resolved);
+  std::filesystem::remove(folder / "the arm.bin");
+  EXPECT_EQ(load_scene(folder / "run/scene.toml").resolved, scene.resolved);
 }
 
 TEST(SurfaceMotion, AttachedVerticesFollowARecordedObstacle) {

@@ -1,4 +1,4 @@
-// Panels below the view, one at a time, selected by tabs. When the dock is closed, only the tabs remain.
+// Panels below the view, one at a time, selected by tabs. When the dock is closed, as at first, only the tabs remain.
 import { makeDivider } from "./divider";
 import { button, element } from "./dom";
 import { whenNarrow } from "./narrow";
@@ -7,7 +7,6 @@ import { keyName } from "./shortcuts";
 
 const kKeys: Record<string, string> = { energy: "e", microscope: "m", landscape: "a", functions: "f", certificate: "q", bench: "k" };
 const kSmallest = 120; // smallest height [px]
-const kLow = 600; // windows below this height open without plots [px]
 const kShare = 0.62; // largest part of the window's height; the mesh keeps the rest
 
 export class Dock {
@@ -23,7 +22,6 @@ export class Dock {
     private readonly root: HTMLElement,
     private readonly page: Page,
     private readonly panels: Panel[],
-    isClosed: boolean, // at first
   ) {
     for (const panel of panels) this.list.append(this.makeTab(panel));
     this.close = button({ icon: "close", label: "Close the plots", title: "Close the plots (D)" }, () => this.show(null));
@@ -47,7 +45,7 @@ export class Dock {
       restore: (saved) => this.restore(saved),
     });
     this.show(panels[0] ?? null);
-    whenNarrow(isClosed || innerHeight < kLow, (narrow) => this.show(narrow ? null : this.last));
+    whenNarrow(true, (narrow) => this.show(narrow ? null : this.last));
   }
 
   // Adds a panel after the construction.

@@ -64,10 +64,10 @@ function buildPage(store: Store, page: Page, sharing: Sharing | null): void {
   let dock: Dock;
   if (store.source.live) for (const extension of extensions) extension.addTo(store, page, display, () => dock);
   const besideSettings = query.has("settings"); // in a notebook
-  const sidebar = new Sidebar(area("right"), page, store.source.live && !besideSettings);
-  addDisplayControls(new GUI({ container: sidebar.body, title: "View" }).open(!besideSettings), display, page, views.all);
+  const sidebar = new Sidebar(area("right"), page, !besideSettings);
+  addDisplayControls(new GUI({ container: sidebar.body, title: "View" }).open(!besideSettings), display, store, page, views.all);
   new Settings(sidebar.body, store, page);
-  dock = new Dock(area("dock"), page, panels, store.source.live);
+  dock = new Dock(area("dock"), page, panels);
   const lecture = new Lecture(area("left"), store, page, (question) => functions.open(question));
   const video = new Video(store, page, views.draw);
   area("views").append(video.indicator);

@@ -73,9 +73,9 @@ export function stepsToShow(frames: { step: number[]; time: number[] }, request:
 // Settings for pictures in articles and in talks.
 const kPresets: Record<string, Partial<DisplaySettings>> = {
   "": { shininess: 20 },
-  paper: { inside: "same", pins: false, contacts: false, grid: false, scaleBar: true, shininess: 15, ownBackground: true, background: "#ffffff" },
+  paper: { inside: "same", obstacleColor: "#d9d9d9", contacts: false, grid: false, scaleBar: true, shininess: 15, ownBackground: true, background: "#ffffff" },
   plain: { inside: "same", shininess: 20, pins: false, contacts: false, textSize: 0 },
-  tissue: { inside: "same", shininess: 50, pins: false, contacts: false, fibres: false, textSize: 0, bodyColor: "#c98474", skin: true },
+  tissue: { inside: "same", shininess: 50, pins: false, contacts: false, fibres: false, textSize: 0, bodyColor: "#c98474", tissue: true, skin: true },
   talk: { inside: "same", shininess: 20, pins: false, contacts: false, textSize: 1.7 },
 };
 const kFilled = 0.86; // part of the picture that the run fills

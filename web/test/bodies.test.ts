@@ -18,6 +18,7 @@ test("each vertex belongs to its tet's body", () => {
 test("two bodies have two colors, first the reader's", () => {
   const colors = bodyColors("#4f8fd0", 8);
   assert.equal(colors[0], "#4f8fd0");
+  for (const tissue of [false, true]) assert.equal(new Set(bodyColors("#4f8fd0", 5, tissue)).size, 5);
   assert.equal(new Set(colors).size, 8);
   assert.deepEqual([...bodyTexels(["#010203", "#ff8000"])], [1, 2, 3, 255, 255, 128, 0, 255]);
 });

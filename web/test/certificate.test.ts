@@ -1,7 +1,7 @@
 // The certificate of a run: totals and the order of its rows.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { excess, kColumns, listed, totals } from "../src/panels/certificate";
+import { excess, kColumns, listed, totals, withValues } from "../src/panels/certificate";
 import { estimatedStep, meshErrorText } from "../src/panels/meshError";
 import type { StepRow } from "../src/protocol";
 import { stepRow } from "./rowsOfSteps";
@@ -50,8 +50,15 @@ test("totals name the worst steps with thresholds", () => {
 
 test("the energy bound has its slack", () => {
   const reported = (row: StepRow): unknown => column("energy bound [J]").value(row);
-  assert.deepEqual(kSteps.map(reported), ["holds by 2", "broken by 1", "–"]);
+  assert.deepEqual(kSteps.map(reported), ["holds by 2", "broken by 1", null]);
   assert.equal(reported(row(4, { energy_bound: "not_guaranteed", energy_slack: -3 })), "not guaranteed");
+});
+
+test("columns without any value are absent", () => {
+  const titles = (steps: StepRow[]): string[] => withValues(steps).map(({ title }) => title);
+  for (const title of ["reactions [N]", "moments [N m]"]) assert.ok(!titles(kSteps).includes(title), title);
+  assert.ok(titles([...kSteps, row(4, { reactions: { left: [1, 0, 0, 0, 0, 0] } })]).includes("reactions [N]"));
+  assert.deepEqual(withValues([]), kColumns);
 });
 
 test("a hash is shortened, its tooltip complete", () => {

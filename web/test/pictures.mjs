@@ -89,8 +89,12 @@ async function drawViewer(browser) {
     await page.mouse.move(x + 200 * share, y - 40 * share, { steps: 4 });
     await reached(page, 50 * share);
   }
-  await page.locator("#toolbar select").first().selectOption("0.1"); // slow, so that all panels show one step
+  await page.locator("#toolbar select").first().evaluate((speeds) => { // slow, so that all panels show one step
+    speeds.add(new Option("0.01x", "0.01", true, true));
+    speeds.dispatchEvent(new Event("change"));
+  });
   await page.waitForTimeout(5000);
+  await page.getByText(/^of step/).waitFor({ state: "hidden" });
   await page.screenshot({ path: join(out, "viewer.png") });
 }
 

@@ -24,8 +24,8 @@ function isBounded(row: StepRow): boolean {
   return row.energy_bound === "holds" || row.energy_bound === "broken";
 }
 
-function boundText(row: StepRow): string {
-  if (row.energy_bound === "none") return "–";
+function boundText(row: StepRow): string | null {
+  if (row.energy_bound === "none") return null;
   if (row.energy_bound === "not_guaranteed") return "not guaranteed";
   return `${row.energy_bound} by ${short(Math.abs(row.energy_slack ?? 0))}`;
 }
@@ -98,6 +98,11 @@ export const kColumns: Column[] = [
     whole: (row) => row.state_hash ?? "",
   },
 ];
+
+// Columns that have a value in some row: a scene without pins has no reactions.
+export function withValues(steps: readonly StepRow[]): Column[] {
+  return kColumns.filter(({ value }) => steps.length === 0 || steps.some((row) => value(row) !== null));
+}
 
 // Rows to list: the worst by a column first, or in order of time.
 export function listed(steps: readonly StepRow[], column: Column, onlyFailed: boolean): StepRow[] {

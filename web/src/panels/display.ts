@@ -3,6 +3,7 @@ import type { GUI } from "lil-gui";
 import { sideHasBlownUp } from "../gain";
 import type { Page } from "../page";
 import type { SettingValue } from "../protocol";
+import type { Side, Store } from "../store";
 import { kCameraModes, kViewNames, type CameraMode, type ViewName } from "../view/cameras";
 import { kDifference } from "../view/difference";
 import { kChoices, kDefaults, type Amount, type Display, type DisplaySettings } from "../view/display";
@@ -13,26 +14,41 @@ type Key = keyof DisplaySettings;
 type Switch = { [K in Key]: DisplaySettings[K] extends boolean ? K : never }[Key];
 type Choices = Record<string, string>;
 
+// Rows for what some scenes lack.
+const kNeeds: { [K in Key]?: (side: Side, store: Store) => boolean } = {
+  thickness: ({ scene }) => scene.thickness?.some((t) => t > 0) ?? false,
+  obstacles: ({ obstacles }) => obstacles.length > 0,
+  contacts: ({ scene }) => scene.potentials.includes("contact"),
+  pins: ({ pins }, { source }) => source.live || pins.length > 0, // a brush can add pins
+  fibres: ({ fibres }) => fibres.length > 0,
+  linked: (_, { sides }) => sides.b !== null,
+};
+
 // A folder whose controls change the display and follow changes from elsewhere.
 class Folder {
   constructor(
     private readonly gui: GUI,
     private readonly display: Display,
+    private readonly store: Store,
   ) {}
 
   within(title: string): Folder {
-    return new Folder(this.gui.addFolder(title).close(), this.display);
+    return new Folder(this.gui.addFolder(title).close(), this.display, this.store);
   }
 
   // `also`: further settings that a change by the reader implies.
-  add(key: Key, label: string, also: Partial<DisplaySettings> = {}): HTMLElement {
+  add(key: Key, label: string, also: Partial<DisplaySettings> = {}): void {
     const { settings } = this.display;
     const choices = kChoices[key as keyof typeof kChoices];
     const isColor = key.endsWith("Color") || key === "background";
     const controller = isColor ? this.gui.addColor(settings, key) : this.gui.add(settings, key, choices);
     controller.name(label).onChange((value: unknown) => this.display.change({ ...also, [key]: value }));
     this.display.on("changed", () => controller.updateDisplay());
-    return controller.domElement;
+    const needs = kNeeds[key];
+    if (!needs) return;
+    const { sides } = this.store;
+    const show = (): void => void controller.show([sides.a, sides.b].some((side) => side && needs(side, this.store)));
+    for (const event of ["scene", "gone", "obstacles", "pins", "fibres"] as const) this.store.on(event, show);
   }
 
   slider(key: Amount, label: string, least: number, most: number, step: number): void {
@@ -66,18 +82,19 @@ class Folder {
   }
 }
 
-export function addDisplayControls(gui: GUI, display: Display, page: Page, views: () => View[]): void {
+export function addDisplayControls(gui: GUI, display: Display, store: Store, page: Page, views: () => View[]): void {
   page.keep("display", display);
   page.keep("camera", display.cameraKeeper);
-  addDisplay(new Folder(gui.addFolder("Display"), display), display, views);
-  addCamera(new Folder(gui.addFolder("Camera").close(), display), display, views);
-  addMouse(new Folder(gui.addFolder("Mouse").close(), display));
+  addDisplay(new Folder(gui.addFolder("Display"), display, store), display, views);
+  addCamera(new Folder(gui.addFolder("Camera").close(), display, store), display, views);
+  addMouse(new Folder(gui.addFolder("Mouse").close(), display, store), store.source.live);
   addDisplayShortcuts(page, display);
   addCameraShortcuts(page, display, views);
 }
 
-function addMouse(folder: Folder): void {
+function addMouse(folder: Folder, live: boolean): void {
   folder.add("tool", "Left button");
+  if (!live) return;
   folder.slider("brush", "Brush radius [px]", 4, 200, 1);
   folder.add("unpin", "Brush unpins");
 }
@@ -86,8 +103,9 @@ function addDisplay(folder: Folder, display: Display, views: () => View[]): void
   addField(folder, display, views);
   folder.add("wires", "Wires");
   folder.add("fill", "Fill");
-  const rows = [folder.add("thickness", "Thickness of sheets"), folder.add("obstacles", "Obstacles"), folder.add("contacts", "Contact points")];
-  for (const row of rows) row.classList.add("of-simulations");
+  folder.add("thickness", "Thickness of sheets");
+  folder.add("obstacles", "Obstacles");
+  folder.add("contacts", "Contact points");
   folder.add("shadows", "Shadows");
   folder.add("clip", "Cut");
   folder.slider("clipAt", "Cut at", 0, 1, 0.001);

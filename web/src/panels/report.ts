@@ -8,7 +8,7 @@ import { plural, short } from "../numbers";
 import type { MaybeNumber, Setting, StepRow, TextReply } from "../protocol";
 import type { Store } from "../store";
 import { saveReply } from "../upload";
-import { excess, kColumns, listed, totals } from "./certificate";
+import { excess, kColumns, listed, totals, withValues, type Column } from "./certificate";
 import { makeMeshError } from "./meshError";
 
 const kRowsPerPage = 100;
@@ -38,15 +38,17 @@ class StepTable {
   }
 
   draw(): void {
-    const rows = listed(this.store.side("a")?.steps ?? [], this.column, this.onlyFailed.checked);
+    const steps = this.store.side("a")?.steps ?? [];
+    const rows = listed(steps, this.column, this.onlyFailed.checked);
+    const columns = withValues(steps);
     this.first = Math.max(0, Math.min(this.first, rows.length - 1));
     this.first -= this.first % kRowsPerPage;
     const shown = rows.slice(this.first, this.first + kRowsPerPage);
     this.range.textContent = shown.length ? `${this.first + 1} to ${this.first + shown.length} of ${rows.length}` : "no steps";
     this.table.replaceChildren(
       element("caption", { hidden: true }, "Steps"),
-      element("thead", {}, element("tr", {}, ...kColumns.map((column) => this.head(column)))),
-      element("tbody", {}, ...shown.map((row) => this.row(row))),
+      element("thead", {}, element("tr", {}, ...columns.map((column) => this.head(column)))),
+      element("tbody", {}, ...shown.map((row) => this.row(row, columns))),
     );
   }
 
@@ -55,7 +57,7 @@ class StepTable {
     this.draw();
   }
 
-  private head(column: (typeof kColumns)[number]): HTMLElement {
+  private head(column: Column): HTMLElement {
     const sorted = column === this.column ? (column.worse ? "descending" : "ascending") : "none";
     const sort = button({ text: column.title, title: `${column.meaning}; ${column.worse ? "worst first" : "in order"}` }, () => {
       this.column = column;
@@ -64,8 +66,8 @@ class StepTable {
     return element("th", { scope: "col", "aria-sort": sorted }, sort);
   }
 
-  private row(row: StepRow): HTMLElement {
-    const cells = kColumns.map((column, i) => {
+  private row(row: StepRow, columns: Column[]): HTMLElement {
+    const cells = columns.map((column, i) => {
       const value = text(column.value(row));
       if (i > 0) return element("td", { class: column.isBad?.(row) ? "bad" : undefined, title: column.whole?.(row) ?? value }, value);
       const show = button({ text: value, title: `Show step ${value}` }, () => this.store.source.send({ do: "rewind", step: row.step }));

@@ -4,6 +4,7 @@ import type { Geometry } from "../protocol";
 // Colors after the reader's color of the first body; distinguishable with any kind of color vision, and not the color
 // of the inside.
 const kFurther = ["#56a35a", "#c9699f", "#d8c23f", "#7a68c4", "#3fb0b5", "#b5543f", "#8a929e"];
+const kTissue = ["#a9503f", "#dcae8c", "#8e3f47", "#cf9a9c"]; // hues of organs
 
 export function bodyOfTet(tet: number, bodyTets: readonly number[]): number {
   let body = -1;
@@ -23,8 +24,9 @@ export function bodiesOf(geometry: Pick<Geometry, "rest" | "triangles" | "tet">,
   return bodies;
 }
 
-export function bodyColors(own: string, count: number): string[] {
-  return Array.from({ length: count }, (_, i) => (i === 0 ? own : kFurther[(i - 1) % kFurther.length]));
+export function bodyColors(own: string, count: number, isTissue = false): string[] {
+  const further = isTissue ? kTissue : kFurther;
+  return Array.from({ length: count }, (_, i) => (i === 0 ? own : further[(i - 1) % further.length]));
 }
 
 // Texels of a map with one color per body, RGBA.

@@ -186,12 +186,12 @@ export class Body {
   }
 
   // Gives each of several bodies a color, the first the reader's choice.
-  colorBodies(own: string): void {
+  colorBodies(own: string, isTissue: boolean): void {
     this.uniforms.fieldShown.value = this.bodies !== null;
     this.surface.specular.setScalar(this.gloss);
     if (!this.bodies) return;
     this.showValues(this.bodies);
-    const colors = bodyColors(own, this.bodyCount);
+    const colors = bodyColors(own, this.bodyCount, isTissue);
     this.showMap(colors.join(), () => bodyTexels(colors));
     this.uniforms.fieldLow.value = 0;
     this.uniforms.fieldScale.value = 1 / (this.bodyCount - 1);

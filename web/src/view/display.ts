@@ -20,11 +20,13 @@ export const kDefaults = {
   insideColor: "#d9a05b",
   invert: false, // swap outside and inside
   shininess: 40,
+  tissue: false, // bodies after the first have hues of organs
   skin: false, // light that enters the body reddens its shadows
   ownBackground: false, // otherwise the background of the theme
   background: "#ffffff",
   transparent: false, // no background, for pictures
   obstacles: true,
+  obstacleColor: "#a7a39b",
   grid: true, // of the ground
   contacts: true,
   shadows: true,

@@ -118,14 +118,14 @@ export class Figure {
   color(): void {
     const shown = this.colored();
     if (shown) this.body?.color(shown.range, this.display.map(shown.field));
-    else this.body?.colorBodies(this.display.settings.bodyColor);
+    else this.body?.colorBodies(this.display.settings.bodyColor, this.display.settings.tissue);
   }
 
   // Names and colors of the bodies if there are several.
   bodies(): { name: string; color: string }[] {
     const names = this.side?.scene.bodies ?? [];
     if (names.length < 2 || !this.body) return [];
-    const colors = bodyColors(this.display.settings.bodyColor, names.length);
+    const colors = bodyColors(this.display.settings.bodyColor, names.length, this.display.settings.tissue);
     return names.map((name, i) => ({ name, color: colors[i]! }));
   }
 

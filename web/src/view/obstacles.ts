@@ -6,7 +6,6 @@ import { disposeOf } from "./dispose";
 import { dot, minus } from "./lens";
 import { kGroundRadius, makeGroundMaterial } from "./shading";
 
-const kColor = "#a7a39b";
 export const kAfterObstacles = -2; // order of what obstacles cover although bodies do not, which are drawn later
 
 // Two unit vectors along a plane, the first as horizontal as possible.
@@ -25,7 +24,7 @@ class Ground extends THREE.Mesh {
     gridStep: { value: 1 },
     gridOrigin: { value: new THREE.Vector2() },
     gridColor: { value: new THREE.Color() },
-    gridStrength: { value: 1 },
+    gridLines: { value: true },
   };
 
   constructor(
@@ -51,10 +50,10 @@ class Ground extends THREE.Mesh {
     this.uniforms.gridOrigin.value.set(-dot(this.axes[0], foot) / unit.radius, -dot(this.axes[1], foot) / unit.radius);
   }
 
-  // null: no grid, only shadows.
-  color(grid: string | null): void {
-    this.uniforms.gridStrength.value = grid === null ? 0 : 1;
-    if (grid !== null) this.uniforms.gridColor.value.set(grid);
+  // Without lines: a faint disk.
+  color(color: string, lines: boolean): void {
+    this.uniforms.gridLines.value = lines;
+    this.uniforms.gridColor.value.set(color);
   }
 }
 
@@ -66,11 +65,7 @@ export interface Units {
 
 export class ObstacleBodies extends THREE.Group {
   private readonly surfaces = new THREE.Group(); // [m]
-  readonly material = new THREE.MeshPhongMaterial({
-    color: kColor,
-    side: THREE.DoubleSide,
-    clipShadows: true,
-  });
+  readonly material = new THREE.MeshPhongMaterial({ side: THREE.DoubleSide, clipShadows: true });
   private grounds: Ground[] = [];
 
   constructor() {
@@ -105,7 +100,7 @@ export class ObstacleBodies extends THREE.Group {
     for (const ground of this.grounds) ground.follow(point, unit);
   }
 
-  color(grid: string | null): void {
-    for (const ground of this.grounds) ground.color(grid);
+  colorGround(color: string, lines: boolean): void {
+    for (const ground of this.grounds) ground.color(color, lines);
   }
 }

@@ -118,7 +118,8 @@ export function makeGroundMaterial(uniforms: Uniforms): THREE.ShadowMaterial {
 }
 
 const kGroundPars = /* glsl */ `
-  uniform float gridStep, gridStrength;
+  uniform float gridStep;
+  uniform bool gridLines;
   uniform vec2 gridOrigin;
   uniform vec3 gridColor;
   varying vec2 vPlane;
@@ -128,9 +129,10 @@ const kGroundColor = /* glsl */ `
   vec2 cell = (vPlane - gridOrigin) / gridStep;
   vec2 blur = max(fwidth(cell), 1e-6);
   vec2 line = clamp(1.0 - abs(fract(cell - 0.5) - 0.5) / blur, 0.0, 1.0) * (1.0 - smoothstep(0.15, 0.5, blur));
-  float grid = gridStrength * (0.1 + 0.4 * max(line.x, line.y));
+  float far = length(vPlane) / ${kGroundRadius.toFixed(1)};
+  float grid = gridLines ? 0.1 + 0.4 * max(line.x, line.y) : 0.16 * (1.0 - smoothstep(0.05, 0.16, far));
   float shade = opacity * (1.0 - getShadowMask());
-  float fade = 1.0 - smoothstep(0.35, 1.0, length(vPlane) / ${kGroundRadius.toFixed(1)});
+  float fade = 1.0 - smoothstep(0.35, 1.0, far);
   float cover = 1.0 - (1.0 - shade) * (1.0 - grid);
   gl_FragColor = vec4(mix(color, gridColor, cover > 0.0 ? grid * (1.0 - shade) / cover : 0.0), fade * cover);
 `;

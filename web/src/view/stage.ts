@@ -126,7 +126,8 @@ export class Stage {
   apply(settings: DisplaySettings, colors: { background: string; grid: string }): void {
     this.scene.background = settings.transparent ? null : new THREE.Color(colors.background);
     this.obstacles.visible = settings.obstacles;
-    this.obstacles.color(settings.grid ? colors.grid : null);
+    this.obstacles.material.color.set(settings.obstacleColor);
+    this.obstacles.colorGround(colors.grid, settings.grid);
     this.contacts.visible = settings.contacts;
     this.sun.castShadow = this.dome.castShadow = settings.shadows;
     this.renderer.shadowMap.needsUpdate = true;

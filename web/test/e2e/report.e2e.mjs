@@ -64,6 +64,12 @@ test("a report of a mesh draws a dot per contact of its table", async () => {
     await until(`${expected} dots at step ${row[step]}`, () => expected === 0 ? drawn.every((count) => count === 0) : drawn.includes(expected) && drawn.every((count) => count === expected));
   }
   assert.ok(rows.some((row) => Number(row[contacts]) > 0), "some step has contacts");
+  const view = await boxOf(page.locator("#views"));
+  assert.ok(view.width === 1024 && view.height > 480, `${view.width} x ${view.height}`);
+  await page.keyboard.press("g");
+  const shows = (label) => page.locator("#right .lil-controller").filter({ hasText: new RegExp(`^${label}$`) }).evaluateAll((rows) => rows.filter((row) => row.style.display !== "none").length);
+  const labels = ["Obstacles", "Contact points", "Thickness of sheets", "Pins", "Fibres", "Link cameras"];
+  assert.deepEqual(await Promise.all(labels.map(shows)), [1, 1, 0, 0, 0, 0], "rows of what the run has");
   await close();
 });
 
