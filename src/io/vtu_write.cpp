@@ -22,7 +22,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "the files say LittleEndian");
 
 constexpr size_t kBlockSize = 1 << 18;  // bytes per compressed block, so that threads share the work
-constexpr size_t kSample = 1 << 13;     // bytes of a block that tell how well it compresses
+constexpr size_t kSample = 1 << 13;     // bytes at the start of a block whose compression predicts that of the block
 constexpr double kRepetitive = 0.7;     // compression ratio below which repeated strings are worth finding
 
 // A file that is written array by array, so that its text need not fit into memory.
