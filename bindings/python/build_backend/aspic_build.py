@@ -1,7 +1,7 @@
 """PEP 517 backend without requirements: CMake builds and installs the package, this makes a wheel of it.
 
 pip install . compiles for this machine. pip wheel . --no-deps --config-settings portable=1, which tools/wheel calls, makes a wheel
-for any x86-64-v3 processor and any Linux whose glibc is not older than this one; it contains the libraries that a Linux may
+for any x86-64-v3 processor and any Linux whose glibc has the symbols that it needs; it contains the libraries that a Linux may
 lack. The build folder build/wheel is kept, so that a second installation takes seconds. Both need the compiler and the
 libraries of CONTRIBUTING.md. The wheel also has the program `aspic`, which view() starts, and its scenes.
 """
@@ -86,6 +86,11 @@ def _libraries(*binaries):
     return files
 
 
+def _newest_glibc(files):
+    """The number after "2." of the oldest glibc that has all symbols of the binaries among {name in the wheel: bytes}."""
+    return max(int(n) for data in files.values() if data[:4] == b"\x7fELF" for n in re.findall(rb"\0GLIBC_2\.(\d+)", data))
+
+
 def _write_wheel(directory, files, system=PLATFORM):
     tag = f"{PYTHON}-{PYTHON}-{system}"
     info = f"{NAME}.dist-info"
@@ -115,9 +120,8 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
                  **_files(ROOT / "scenes", f"{data}/data/share/aspic/scenes/")}
         if not portable:
             return _write_wheel(wheel_directory, files)
-        glibc = platform.libc_ver()[1].replace(".", "_")
-        libraries = _libraries(program, *pathlib.Path(prefix).rglob("*.so"))
-        return _write_wheel(wheel_directory, {**files, **libraries}, f"manylinux_{glibc}_{platform.machine()}")
+        files |= _libraries(program, *pathlib.Path(prefix).rglob("*.so"))
+        return _write_wheel(wheel_directory, files, f"manylinux_2_{_newest_glibc(files)}_{platform.machine()}")
 
 
 def _files(folder, to):
