@@ -7,6 +7,7 @@ libraries of CONTRIBUTING.md. The wheel also has the program `aspic`, which view
 """
 import base64
 import hashlib
+import os
 import pathlib
 import platform
 import re
@@ -21,13 +22,17 @@ import zipfile
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 NAME = f"{PROJECT['name']}-{PROJECT['version']}"
-PYTHON = f"cp{sys.version_info.major}{sys.version_info.minor}"
+# The Python of the wheel: this one, or that of a folder with bin/python3, include and lib/cmake, see tools/wheel.
+OTHER = os.environ.get("ASPIC_OTHER_PYTHON")
+EXECUTABLE = f"{OTHER}/bin/python3" if OTHER else sys.executable
+VERSION = subprocess.check_output([EXECUTABLE, "-c", "import sysconfig; print(sysconfig.get_python_version())"], text=True).strip()
+PYTHON = "cp" + VERSION.replace(".", "")
 PLATFORM = sysconfig.get_platform().replace("-", "_").replace(".", "_")
 # Libraries that the tag manylinux promises (PEP 600); others are copied into the wheel.
 EVERYWHERE = ("ld-linux-x86-64", "libc", "libdl", "libexpat", "libgcc_s", "libm", "libpthread", "libstdc++", "libz", "linux-vdso")
 # Places of the copies seen from the module and from the program: in an environment, Debian's /usr/local, and pip --target.
-LIBRARIES = (f"$ORIGIN/../aspic.libs:$ORIGIN/../lib/python{sysconfig.get_python_version()}/site-packages/aspic.libs:"
-             f"$ORIGIN/../lib/python{sysconfig.get_python_version()}/dist-packages/aspic.libs")
+LIBRARIES = (f"$ORIGIN/../aspic.libs:$ORIGIN/../lib/python{VERSION}/site-packages/aspic.libs:"
+             f"$ORIGIN/../lib/python{VERSION}/dist-packages/aspic.libs")
 
 
 def _run(*command):
@@ -40,11 +45,13 @@ def _build(portable, prefix):
     viewer = "ON" if shutil.which("npm") else "OFF"
     options = {"CMAKE_BUILD_TYPE": "Release", "ASPIC_PYTHON": "ON", "ASPIC_TESTS": "OFF", "ASPIC_BENCH": "OFF",
                "ASPIC_MESHER": "OFF", "ASPIC_VIEWER": viewer, "ASPIC_PORTABLE": "ON" if portable else "OFF",
-               "Python_EXECUTABLE": sys.executable, "ASPIC_PYTHON_DIR": "aspic"}
+               "Python_EXECUTABLE": EXECUTABLE, "ASPIC_PYTHON_DIR": "aspic"}
+    if OTHER:
+        options |= {"Python_INCLUDE_DIR": f"{OTHER}/include/python{VERSION}", "pybind11_DIR": f"{OTHER}/lib/cmake/pybind11"}
     if portable:  # an RPATH, which serves the libraries of libraries, too, instead of a RUNPATH
         options |= {"CMAKE_BUILD_WITH_INSTALL_RPATH": "ON", "CMAKE_INSTALL_RPATH": LIBRARIES}
         options |= {f"CMAKE_{kind}_LINKER_FLAGS": "-Wl,--disable-new-dtags" for kind in ("EXE", "MODULE")}
-    _run("cmake", "-S", ".", "-B", build, "-G", "Ninja", *(f"-D{key}={value}" for key, value in options.items()))
+    _run("cmake", "--fresh", "-S", ".", "-B", build, "-G", "Ninja", *(f"-D{key}={value}" for key, value in options.items()))
     _run("cmake", "--build", build, "--target", "_aspic", "aspic_cli")
     _run("cmake", "--install", build, "--prefix", prefix, "--component", "python")
     return build / "bin/aspic"
@@ -52,7 +59,7 @@ def _build(portable, prefix):
 
 def _needs_numpy_1():
     """Whether pybind11 is older than 2.12, which cannot read arrays of NumPy 2."""
-    header = pathlib.Path("/usr/include/pybind11/detail/common.h")
+    header = pathlib.Path(OTHER or "/usr", "include/pybind11/detail/common.h")
     version = re.findall(r"PYBIND11_VERSION_M\w+ (\d+)", header.read_text()) if header.exists() else [2, 12]
     return [int(part) for part in version] < [2, 12]
 
