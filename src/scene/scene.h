@@ -37,11 +37,12 @@ struct Table;  // see scene/value.h
 struct Scene {
   std::string name;                // file name without extension
   std::string resolved;            // TOML with all defaults filled in; running it gives the same bits
-  std::vector<std::string> notes;  // chosen defaults with reasons; warnings about meshes
+  std::vector<std::string> notes;  // chosen defaults with reasons; last the warnings
   std::string start_warning;       // energy of contact at the start and its remedy; empty: none. One of the notes
   Simulation simulation;           // its model is renumbered; model().numbering leads back to the user's numbers
   std::vector<Skin> skins;         // one per body
   int steps = 0;                   // of the whole run
+  std::vector<std::string> warnings;
   OutputOptions output;
   // The inputs of `resolved` by their names there ("inputs/bunny.msh"): files to copy, and meshes that were made from a
   // surface.

@@ -58,10 +58,13 @@ class SceneBuilder {
     const SimulationOptions options = simulation_options(source_.document, source_.notes);
     require_integrator(options.integrator);
     put_in_order(source_.document);
-    for (std::string& note : source_.notes) note = printable(note);
+    source_.notes.insert(source_.notes.end(), warnings_.begin(), warnings_.end());
+    for (auto* texts : {&source_.notes, &warnings_})
+      for (std::string& text : *texts) text = printable(text);
     return {printable(source_.name),
             std::move(source_.document),
             std::move(source_.notes),
+            std::move(warnings_),
             std::move(model_),
             std::move(state),
             options,
@@ -78,7 +81,7 @@ class SceneBuilder {
     try {
       Simulation simulation(std::move(scene.model), std::move(scene.start), scene.options);
       std::string warning = start_warning(simulation);
-      if (!warning.empty()) scene.notes.push_back(warning);
+      if (!warning.empty()) scene.notes.push_back(warning), scene.warnings.push_back(warning);
       return {std::move(scene.name),
               to_toml(scene.document),
               std::move(scene.notes),
@@ -86,6 +89,7 @@ class SceneBuilder {
               std::move(simulation),
               std::move(skins_),
               steps,
+              std::move(scene.warnings),
               output,
               std::move(scene.input_files),
               std::move(scene.generated_meshes),
@@ -146,7 +150,7 @@ class SceneBuilder {
       } catch (const InvalidInput& e) {
         throw InvalidInput(source_.file + ": body '" + body.name() + "', deform: " + e.what());
       }
-      note_start(body, source_.notes);
+      note_start(body, warnings_);
       add_to_model(body);
       for (Carrier& carrier : mesh.embedding.carriers)
         for (int n = 0; n < carrier.count; ++n) carrier.vertex[n] = body.model_vertex(carrier.vertex[n]);
@@ -187,7 +191,7 @@ class SceneBuilder {
     for (PlacedBody& body : bodies_) {
       const Renumbering& tet = body.numbering.tet;
       const BodyMaterial material = body_material(body, files_, source_.notes);
-      note_stiffness(body, material, source_.document.find("gravity")->vector(), source_.notes);
+      note_stiffness(body, material, source_.document.find("gravity")->vector(), warnings_);
       if (!body.mesh.sheet.empty()) {
         model_.elasticity.push_back(sheet_elasticity(body, material, held, model_));
         append_to(density_of_sheets, material.density);
@@ -217,7 +221,7 @@ class SceneBuilder {
     MeshLoader loader = mesh_loader();
     add_scene_contact(source_.document, loader, initial_positions(), model_);
     add_attachments(source_.document, bodies_, model_, source_.notes);
-    for (const PlacedBody& body : bodies_) note_parts(body, model_, source_.notes);
+    for (const PlacedBody& body : bodies_) note_parts(body, model_, warnings_);
   }
 
   // Returns 1 for each vertex that pins hold in all directions.
@@ -261,6 +265,7 @@ class SceneBuilder {
   const SceneOptions& options_;
   std::vector<PlacedBody> bodies_;
   Model model_;
+  std::vector<std::string> warnings_;  // see Scene
   std::vector<Skin> skins_;
 };
 

@@ -15,6 +15,7 @@ struct SceneModel {
   std::string name;                // see Scene
   Table document;                  // with all defaults
   std::vector<std::string> notes;  // see Scene
+  std::vector<std::string> warnings;
   Model model;
   State start;
   SimulationOptions options;

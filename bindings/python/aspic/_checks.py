@@ -65,3 +65,10 @@ def bounded(value, name):
     array = np.asarray(value)
     _aspic.require_bounded(array, name)
     return array
+
+
+def count_of(value, name, least):
+    """The value as an int. Raises InvalidInput for fractions, numbers below `least`, and what is no number."""
+    if not isinstance(value, (int, float, np.number)) or not least <= value < 2**31 or value != int(value):
+        raise _aspic.InvalidInput(f"{name} = {value!r}; expected an integer of at least {least}")
+    return int(value)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from . import _aspic
-from ._checks import Floats, SceneState, Strict
+from ._checks import Floats, SceneState, Strict, count_of
 from .scenes import scene_of
 
 
@@ -86,7 +86,7 @@ class Trajectory(Strict):
 
     def __init__(self, scene, steps, h=0.0, tolerance=1e-9) -> None:
         scene = scene_of(scene)
-        self._core = _aspic.Trajectory(scene._source(), steps, h or 0.0, tolerance)
+        self._core = _aspic.Trajectory(scene._source(), count_of(steps, "steps", 1), h or 0.0, tolerance)
         self._scene_state = SceneState(scene, "trajectory")
 
     @property

@@ -226,7 +226,7 @@ def box(size, cells, origin=(0, 0, 0), cut="kuhn") -> Mesh:
     counts = _three(cells, "cells")
     if (counts != np.floor(counts)).any() or (abs(counts) > 1e9).any():
         raise _aspic.InvalidInput(f"cells = {cells}: must be integers")
-    return Mesh(*_aspic.box(low, low + _three(size, "size"), [int(n) for n in counts], cut))
+    return Mesh(*_aspic.box(low, _three(size, "size"), [int(n) for n in counts], cut))
 
 
 def _three(value, name):

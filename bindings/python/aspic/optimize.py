@@ -16,7 +16,11 @@ def test_function(name) -> _aspic.Objective:
 
 
 def _objective(f, x0):
-    return f if isinstance(f, _aspic.Objective) else _aspic.PythonObjective(f, np.asarray(x0, float))
+    if isinstance(f, _aspic.Objective):
+        return f
+    if not (hasattr(f, "value") and hasattr(f, "gradient")):
+        raise _aspic.InvalidInput(f"f: this is {type(f).__name__}; expected an Objective, or an object with value(x) and gradient(x)")
+    return _aspic.PythonObjective(f, np.asarray(x0, float))
 
 
 def minimize(f, x0, direction="newton", line_search=None, observe=None, **options) -> types.SimpleNamespace:

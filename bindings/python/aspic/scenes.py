@@ -24,8 +24,10 @@ _PLACEHOLDER = {"name": "body", "shape": {"sphere": {"radius": 1.0, "size": 1.0}
 def _numbers(key, values):
     """Values per tet as an array of their own."""
     values = bounded(values, f"material.{key}")
-    if values.dtype.kind not in "fiu" or values.ndim != 1 or not np.isfinite(values).all():
-        raise _aspic.InvalidInput(f"material.{key}: must be finite numbers, one per tet")
+    if values.dtype.kind not in "fiu" or values.ndim != 1:
+        raise _aspic.InvalidInput(f"material.{key}: shape {values.shape}, dtype {values.dtype}; expected one number per tet")
+    if (bad := np.flatnonzero(~np.isfinite(values))).size:
+        raise _aspic.InvalidInput(f"material.{key}[{bad[0]}] = {values[bad[0]]}; must be finite")
     return np.array(values)
 
 
@@ -153,6 +155,9 @@ class Body(Strict):
         if where is None or isinstance(where, (str, dict)):
             return where
         array = bounded(where, "where")
+        if array.size and array.dtype.kind not in "biu":
+            raise _aspic.InvalidInput(f"where: dtype {array.dtype}, shape {array.shape}; expected a mask, such as "
+                                      "body.vertices[:, 1] == 0, or numbers of vertices, as integers")
         if self._mesh is not None:
             count = len(self._mesh.vertices)
             if array.dtype == bool and array.shape != (count,):
@@ -160,6 +165,8 @@ class Body(Strict):
             if array.dtype.kind in "iu" and array.size and not (0 <= array.min() and array.max() < count):
                 bad = array.max() if array.max() >= count else array.min()
                 raise _aspic.InvalidInput(f"where.vertices: {bad}; body '{self.name}' has the vertices 0 to {count - 1}")
+            if array.dtype != bool and array.shape == (count,) and array.max() < 2 < count:
+                raise _aspic.InvalidInput("where: zeros and ones, which are the vertices 0 and 1; make a mask with .astype(bool)")
         return {"vertices": np.flatnonzero(array) if array.dtype == bool else array.ravel()}
 
     def _change(self, table):
@@ -277,6 +284,12 @@ class Scene(Strict):
         self._require_code("add()")
         if isinstance(mesh, Thin):
             mesh, values = mesh.mesh, {**mesh.table, **values}
+        if not isinstance(mesh, (Mesh, Surface, Polyline, dict, str, os.PathLike)):
+            raise _aspic.InvalidInput(f"mesh: this is {type(mesh).__name__}; expected a Mesh(vertices, tets), a Surface, "
+                                      "a sheet or a rod, the path of a file, or a shape as a dict")
+        if not isinstance(name, (str, type(None))):
+            raise _aspic.InvalidInput(f"name: this is {type(name).__name__}; expected a string; other values need a keyword, "
+                                      "such as material=...")
         table = {"name": name or f"body{len(self.bodies) + 1}", **values}
         if isinstance(mesh, Mesh):
             table["mesh"] = self._file("msh")

@@ -2,7 +2,9 @@
 from __future__ import annotations
 
 import os
+import re
 import tempfile
+import warnings
 from collections.abc import Iterator
 from typing import Any
 
@@ -10,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _aspic
-from ._checks import Floats, Ints, SceneState, Strict, read_only
+from ._checks import Floats, Ints, SceneState, Strict, count_of, read_only
 from .notebook import Player, in_notebook
 from .results import Run
 from .scenes import Scene, scene_of
@@ -65,8 +67,13 @@ class Simulation(Strict):
         self._scene = scene_of(scene)
         settings = {"time.step": h, "time.integrator": integrator,
                     **{f"solver.{key}": value for key, value in _solver_keys(solver or {}).items()}}
-        source = self.scene._source({key: value for key, value in settings.items() if value is not None})
-        self._core = _aspic.Simulation(source)
+        try:
+            source = self.scene._source({key: value for key, value in settings.items() if value is not None})
+            self._core = _aspic.Simulation(source)
+        except _aspic.InvalidInput as error:
+            raise _aspic.InvalidInput(re.sub(r"^\S+ ?time\.step\S* step = ", "h = ", str(error))) from None
+        for text in self._core.warnings:
+            warnings.warn(text, stacklevel=2)
         self._scene_state = SceneState(self.scene, "simulation")
         self._inputs = self.scene._inputs  # files that the recording copies
         self._folder = out
@@ -133,7 +140,7 @@ class Simulation(Strict):
 
     @property
     def notes(self) -> list[str]:
-        """Chosen defaults and warnings, as sentences."""
+        """Chosen defaults and warnings, as sentences. The constructor gives the latter as Python warnings, too."""
         return self._core.notes
 
     @property
@@ -223,7 +230,7 @@ class Simulation(Strict):
 
         check: raise NotConverged at the first step that does not converge. method: direction and line_search of step().
         """
-        last = self._core.steps_of_run if count is None else self.steps_taken + count
+        last = self._last(count)
         while self.steps_taken < last:
             report = self.step(observe, **method)
             if report.status == "interrupted":
@@ -232,10 +239,16 @@ class Simulation(Strict):
                 raise NotConverged(report)
             yield report
 
+    def _last(self, count):
+        """Number of the last step of `count` steps from now on."""
+        if count is None:
+            return self._core.steps_of_run
+        return self.steps_taken + count_of(count, "count", 0)
+
     def run(self, count=None, observe=None, check=False, progress=False, **method) -> Reports:
         """Takes steps, see steps(), and returns their Reports; progress: show a line about them."""
         reports = Reports()
-        last = self._core.steps_of_run if count is None else self.steps_taken + count
+        last = self._last(count)
         show = _progress(last) if progress else None
         for report in self.steps(count, observe, check, **method):
             reports.append(report)

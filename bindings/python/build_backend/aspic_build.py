@@ -1,12 +1,13 @@
 """PEP 517 backend without requirements: CMake builds and installs the package, this makes a wheel of it.
 
 pip install . compiles for this machine. pip wheel . --no-deps --config-settings portable=1, which tools/wheel calls, makes a wheel
-for any x86-64-v3 processor and any Linux whose glibc is not older than this one; it contains the libraries that a Linux may
+for any x86-64-v3 processor and any Linux whose glibc has the symbols that it needs; it contains the libraries that a Linux may
 lack. The build folder build/wheel is kept, so that a second installation takes seconds. Both need the compiler and the
 libraries of CONTRIBUTING.md. The wheel also has the program `aspic`, which view() starts, and its scenes.
 """
 import base64
 import hashlib
+import os
 import pathlib
 import platform
 import re
@@ -21,13 +22,17 @@ import zipfile
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 NAME = f"{PROJECT['name']}-{PROJECT['version']}"
-PYTHON = f"cp{sys.version_info.major}{sys.version_info.minor}"
+# The Python of the wheel: this one, or that of a folder with bin/python3, include and lib/cmake, see tools/wheel.
+OTHER = os.environ.get("ASPIC_OTHER_PYTHON")
+EXECUTABLE = f"{OTHER}/bin/python3" if OTHER else sys.executable
+VERSION = subprocess.check_output([EXECUTABLE, "-c", "import sysconfig; print(sysconfig.get_python_version())"], text=True).strip()
+PYTHON = "cp" + VERSION.replace(".", "")
 PLATFORM = sysconfig.get_platform().replace("-", "_").replace(".", "_")
 # Libraries that the tag manylinux promises (PEP 600); others are copied into the wheel.
 EVERYWHERE = ("ld-linux-x86-64", "libc", "libdl", "libexpat", "libgcc_s", "libm", "libpthread", "libstdc++", "libz", "linux-vdso")
 # Places of the copies seen from the module and from the program: in an environment, Debian's /usr/local, and pip --target.
-LIBRARIES = (f"$ORIGIN/../aspic.libs:$ORIGIN/../lib/python{sysconfig.get_python_version()}/site-packages/aspic.libs:"
-             f"$ORIGIN/../lib/python{sysconfig.get_python_version()}/dist-packages/aspic.libs")
+LIBRARIES = (f"$ORIGIN/../aspic.libs:$ORIGIN/../lib/python{VERSION}/site-packages/aspic.libs:"
+             f"$ORIGIN/../lib/python{VERSION}/dist-packages/aspic.libs")
 
 
 def _run(*command):
@@ -40,11 +45,13 @@ def _build(portable, prefix):
     viewer = "ON" if shutil.which("npm") else "OFF"
     options = {"CMAKE_BUILD_TYPE": "Release", "ASPIC_PYTHON": "ON", "ASPIC_TESTS": "OFF", "ASPIC_BENCH": "OFF",
                "ASPIC_MESHER": "OFF", "ASPIC_VIEWER": viewer, "ASPIC_PORTABLE": "ON" if portable else "OFF",
-               "Python_EXECUTABLE": sys.executable, "ASPIC_PYTHON_DIR": "aspic"}
+               "Python_EXECUTABLE": EXECUTABLE, "ASPIC_PYTHON_DIR": "aspic"}
+    if OTHER:
+        options |= {"Python_INCLUDE_DIR": f"{OTHER}/include/python{VERSION}", "pybind11_DIR": f"{OTHER}/lib/cmake/pybind11"}
     if portable:  # an RPATH, which serves the libraries of libraries, too, instead of a RUNPATH
         options |= {"CMAKE_BUILD_WITH_INSTALL_RPATH": "ON", "CMAKE_INSTALL_RPATH": LIBRARIES}
         options |= {f"CMAKE_{kind}_LINKER_FLAGS": "-Wl,--disable-new-dtags" for kind in ("EXE", "MODULE")}
-    _run("cmake", "-S", ".", "-B", build, "-G", "Ninja", *(f"-D{key}={value}" for key, value in options.items()))
+    _run("cmake", "--fresh", "-S", ".", "-B", build, "-G", "Ninja", *(f"-D{key}={value}" for key, value in options.items()))
     _run("cmake", "--build", build, "--target", "_aspic", "aspic_cli")
     _run("cmake", "--install", build, "--prefix", prefix, "--component", "python")
     return build / "bin/aspic"
@@ -52,7 +59,7 @@ def _build(portable, prefix):
 
 def _needs_numpy_1():
     """Whether pybind11 is older than 2.12, which cannot read arrays of NumPy 2."""
-    header = pathlib.Path("/usr/include/pybind11/detail/common.h")
+    header = pathlib.Path(OTHER or "/usr", "include/pybind11/detail/common.h")
     version = re.findall(r"PYBIND11_VERSION_M\w+ (\d+)", header.read_text()) if header.exists() else [2, 12]
     return [int(part) for part in version] < [2, 12]
 
@@ -86,6 +93,11 @@ def _libraries(*binaries):
     return files
 
 
+def _newest_glibc(files):
+    """The number after "2." of the oldest glibc that has all symbols of the binaries among {name in the wheel: bytes}."""
+    return max(int(n) for data in files.values() if data[:4] == b"\x7fELF" for n in re.findall(rb"\0GLIBC_2\.(\d+)", data))
+
+
 def _write_wheel(directory, files, system=PLATFORM):
     tag = f"{PYTHON}-{PYTHON}-{system}"
     info = f"{NAME}.dist-info"
@@ -115,9 +127,8 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
                  **_files(ROOT / "scenes", f"{data}/data/share/aspic/scenes/")}
         if not portable:
             return _write_wheel(wheel_directory, files)
-        glibc = platform.libc_ver()[1].replace(".", "_")
-        libraries = _libraries(program, *pathlib.Path(prefix).rglob("*.so"))
-        return _write_wheel(wheel_directory, {**files, **libraries}, f"manylinux_{glibc}_{platform.machine()}")
+        files |= _libraries(program, *pathlib.Path(prefix).rglob("*.so"))
+        return _write_wheel(wheel_directory, files, f"manylinux_2_{_newest_glibc(files)}_{platform.machine()}")
 
 
 def _files(folder, to):

@@ -95,7 +95,8 @@ std::vector<int> indices(const py::handle& value, const std::string& name, const
   const py::array array = array_of(value, name, "an array of integers");
   const bool is_empty = array.size() == 0;  // whose dtype is that of floats
   if (!is_empty && array.dtype().kind() != 'i' && array.dtype().kind() != 'u')
-    throw InvalidInput(name + ": dtype " + std::string(py::str(array.dtype())) + "; expected integers");
+    throw InvalidInput(name + ": dtype " + std::string(py::str(array.dtype())) + "; expected integers, as of " + name +
+                       ".astype(int)");
   require_shape(array, name, shape);
   require_bounded(array, name);
   const auto numbers = py::array_t<int64_t, py::array::c_style | py::array::forcecast>::ensure(array);
@@ -106,7 +107,8 @@ std::vector<int> indices(const py::handle& value, const std::string& name, const
     const int64_t index = numbers.data()[i];
     if (index < 0 || index >= limit)
       throw InvalidInput(name + place_of(i, shape_of(numbers)) + " = " + std::to_string(index) +
-                         "; must be at least 0 and below " + std::to_string(limit));
+                         "; must be at least 0 and below " + std::to_string(limit) +
+                         (index == limit ? ", because numbers begin with 0" : ""));
     result.push_back(static_cast<int>(index));
   }
   return result;

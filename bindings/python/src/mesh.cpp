@@ -13,6 +13,7 @@
 #include "mesh/generators.h"
 #include "mesh/surface.h"
 #include "mesh/tet_shape.h"
+#include "scene/value.h"
 
 namespace aspic::python {
 namespace {
@@ -87,7 +88,8 @@ Vec3d vector_of(const py::handle& value, const std::string& name) {
 }
 
 double positive(double value, const char* name) {
-  if (!(value > 0) || !std::isfinite(value)) throw InvalidInput(std::string(name) + ": must be positive and finite");
+  if (!(value > 0) || !std::isfinite(value))
+    throw InvalidInput(std::string(name) + " = " + number_text(value) + "; must be positive and finite");
   return value;
 }
 
@@ -98,12 +100,13 @@ void check_count(double tets) {
                        " tets; at most 2e+07 are generated (choose a larger size)");
 }
 
-py::tuple box(const py::handle& lower, const py::handle& upper, const std::vector<int>& cells, const std::string& cut) {
-  const Vec3d low = vector_of(lower, "lower"), high = vector_of(upper, "upper");
+py::tuple box(const py::handle& origin, const py::handle& size, const std::vector<int>& cells, const std::string& cut) {
+  const Vec3d low = vector_of(origin, "origin"), high = low + vector_of(size, "size");
   if (cells.size() != 3) throw InvalidInput("cells: three counts are needed");
   for (int i = 0; i < 3; ++i) {
-    if (cells[i] < 1) throw InvalidInput("cells: each count must be at least 1");
-    if (!(high[i] > low[i])) throw InvalidInput("upper: each number must be above that of lower");
+    if (cells[i] < 1) throw InvalidInput("cells: " + std::to_string(cells[i]) + "; each count must be at least 1");
+    if (!(high[i] > low[i]))
+      throw InvalidInput("size: " + number_text(high[i] - low[i]) + "; each number must be positive");
   }
   if (cut != "kuhn" && cut != "five") throw InvalidInput("cut: unknown name" + suggestion(cut, {"kuhn", "five"}));
   check_count(6.0 * cells[0] * cells[1] * cells[2]);
@@ -197,9 +200,9 @@ void bind_mesh(py::module_& m) {
   });
   m.def("require_bounded", &require_bounded, "Raises InvalidInput for a broadcast array whose copy fills the memory.");
   m.def("box", &box);
-  m.def("cylinder", &cylinder);
-  m.def("sphere", &sphere);
-  m.def("torus", &torus);
+  m.def("cylinder", &cylinder, py::arg("radius"), py::arg("height"), py::arg("size"));
+  m.def("sphere", &sphere, py::arg("radius"), py::arg("size"));
+  m.def("torus", &torus, py::arg("major_radius"), py::arg("minor_radius"), py::arg("size"));
 }
 
 }  // namespace aspic::python

@@ -165,27 +165,33 @@ void bind_report(py::module_& m) {
   py::class_<Report> report(m, "StepReport", "The record of a time step.");
   report.def_readonly("step", &Report::step, "1 for the first.")
       .def_readonly("time", &Report::time, "At the end of the step [s].")
-      .def_property_readonly("status", [](const Report& r) { return std::string(to_string(r.status)); })
+      .def_property_readonly(
+          "status", [](const Report& r) { return std::string(to_string(r.status)); },
+          "converged, round_off (a success, too), or why the step ended: iteration_limit, budget, stuck, no_descent, "
+          "interrupted, undefined, unstable, inaccurate, inverted.")
       .def_property_readonly(
           "ok", [](const Report& r) { return is_success(r.status); }, "The step converged.")
-      .def_readonly("iterations", &Report::iterations)
+      .def_readonly("iterations", &Report::iterations, "Iterations of the minimizer.")
       .def_readonly("trials", &Report::trials, "Evaluations by line searches.")
-      .def_readonly("projected_hessians", &Report::projected_hessians)
+      .def_readonly("projected_hessians", &Report::projected_hessians,
+                    "Modified Hessians among those of the iterations.")
       .def_readonly("objective", &Report::objective, "E at the end of the minimization.")
-      .def_readonly("gradient_norm", &Report::objective_gradient)
+      .def_readonly("gradient_norm", &Report::objective_gradient,
+                    "Norm of the gradient of E at the end of the minimization.")
       .def_readonly("residual", &Report::residual, "|M a + dV/dx + dD/dx| over the free vertices [N].")
-      .def_readonly("residual_threshold", &Report::residual_threshold, "[N]")
-      .def_readonly("min_det_F", &Report::min_det_F)
-      .def_readonly("contacts", &Report::contacts)
+      .def_readonly("residual_threshold", &Report::residual_threshold,
+                    "The residual below which a step counts as converged [N].")
+      .def_readonly("min_det_F", &Report::min_det_F, "Smallest volume ratio of any tet; negative: inverted.")
+      .def_readonly("contacts", &Report::contacts, "Pairs of surface features in contact.")
       .def_readonly("min_gap", &Report::min_gap, "Smallest distance of a contact [m].")
       .def_readonly("attachment_gap", &Report::attachment_gap, "Largest gap of an attachment [m].")
-      .def_readonly("kinetic", &Report::kinetic, "[J]")
+      .def_readonly("kinetic", &Report::kinetic, "Kinetic energy [J].")
       .def_property_readonly("potential", &potential_of, "Energy of each term of V by name [J].")
-      .def_readonly("potential_total", &Report::potential_total, "[J]")
-      .def_readonly("pin_work", &Report::pin_work, "[J]")
-      .def_readonly("load_work", &Report::load_work, "[J]")
-      .def_readonly("muscle_work", &Report::muscle_work, "[J]")
-      .def_readonly("damping_loss", &Report::damping_loss, "[J]")
+      .def_readonly("potential_total", &Report::potential_total, "V, the sum of all potentials [J].")
+      .def_readonly("pin_work", &Report::pin_work, "Work of moving pins [J].")
+      .def_readonly("load_work", &Report::load_work, "Work of loads [J].")
+      .def_readonly("muscle_work", &Report::muscle_work, "Work of muscles [J].")
+      .def_readonly("damping_loss", &Report::damping_loss, "Energy lost to damping and friction [J].")
       .def_readonly("nonconservative_work", &Report::nonconservative_work,
                     "Work of pressures on open patches beyond the change of their potential [J].")
       .def_readonly("numerical_loss", &Report::numerical_loss, "Energy lost by the integrator [J].")
@@ -198,7 +204,8 @@ void bind_report(py::module_& m) {
           [](const Report& r) { return vectors_of(r.pin_names, r.resultants.pins, &Resultant::moment); },
           "Moment of each pin about the origin by name [N m].")
       .def_readonly("seconds", &Report::seconds, "Wall time.")
-      .def_property_readonly("state_hash", [](const Report& r) { return hex_digits(r.state_hash); })
+      .def_property_readonly(
+          "state_hash", [](const Report& r) { return hex_digits(r.state_hash); }, "As in steps.csv: 16 digits.")
       .def_property_readonly("explanation", &explanation_of, "Cause, place and remedy of a failure; else empty.")
       .def("to_dict", &columns_of, "All columns of steps.csv.")
       .def(py::pickle(&dict_of_all, &report_in))

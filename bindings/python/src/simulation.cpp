@@ -340,6 +340,7 @@ void bind_simulation(py::module_& m) {
       .def_property_readonly("steps_of_run", [](LiveSimulation& s) { return s.scene().steps; })
       .def_property_readonly("name", [](LiveSimulation& s) { return s.scene().name; })
       .def_property_readonly("notes", [](LiveSimulation& s) { return s.scene().notes; })
+      .def_property_readonly("warnings", [](LiveSimulation& s) { return s.scene().warnings; })
       .def_property_readonly("resolved", [](LiveSimulation& s) { return s.scene().resolved; })
       .def_property_readonly("solver", [](LiveSimulation& s) { return s.simulation().solver_description(); })
       .def_property_readonly("state_hash", [](LiveSimulation& s) { return hex_digits(s.simulation().state_hash()); })

@@ -2,6 +2,7 @@
 import copy
 import gc
 import pickle
+import warnings
 
 import numpy as np
 import pytest
@@ -24,9 +25,14 @@ def inverted(cells):
     (lambda: aspic.Material(E=1e5), "did you mean 'young'"),
     (lambda: aspic.Material(young=1e5, poisson=[.3, .5]), "poisson = 0.5; must be"),
     (lambda: aspic.Material(young="X +"), "ends too early"),
-    (lambda: aspic.Material(young=[1, np.nan]), "finite"),
+    (lambda: aspic.Material(young=[1, np.nan]), r"young\[1\] = nan; must be finite"),
+    (lambda: aspic.Material(young=[[1, 2]]), r"young: shape \(1, 2\).*one number per tet"),
     (lambda: aspic.Material(young=1, mu=2), "excludes"),
-    (lambda: aspic.Mesh(CUBE.vertices, CUBE.tets + 1), r"tets\[42, 3\] = 27; must be"),
+    (lambda: aspic.Mesh(CUBE.vertices, CUBE.tets + 1), r"tets\[42, 3\] = 27; must be .* begin with 0"),
+    (lambda: aspic.Mesh(CUBE.vertices, CUBE.tets.astype(float)), r"float64; expected integers, as of tets.astype\(int\)"),
+    (lambda: aspic.box((1, -2, 1), 2), "size: -2; each number must be positive"),
+    (lambda: aspic.box(1, 0), "cells: 0; each count"),
+    (lambda: aspic.sphere(radius=-1, size=.1), "radius = -1; must be positive"),
     (lambda: aspic.Mesh(CUBE.vertices * np.nan, CUBE.tets), "must be finite"),
     (lambda: aspic.Surface(CUBE.vertices, CUBE.triangles + 1), r"triangles.* = 27; must be"),
     (lambda: aspic.Surface(CUBE.vertices, CUBE.tets), r"triangles: shape \(48, 4\)"),
@@ -42,6 +48,13 @@ def inverted(cells):
     (lambda: aspic.Scene().add("no.msh"), "does not exist"),
     (lambda: aspic.Scene().add(ROOT / "README.md"), "extension"),
     (lambda: aspic.Scene().add({"sphere": {"radius": -1, "size": 1}}), "radius = -1"),
+    (lambda: aspic.Scene().add(CUBE.vertices, CUBE.tets), r"mesh: this is ndarray; expected a Mesh\(vertices, tets\)"),
+    (lambda: aspic.Scene().add(CUBE, aspic.Material()), "name: this is Material; expected a string; .*material=..."),
+    (lambda: aspic.Simulation(ROOT / "scenes/cantilever.toml", h="x"), '^h = "x"; this is a string'),
+    (lambda: aspic.Simulation(make_jelly()).run(2.5), "count = 2.5; expected an integer of at least 0"),
+    (lambda: aspic.Simulation(make_jelly()).run("3"), "count = '3'; expected"),
+    (lambda: aspic.Trajectory(make_jelly(), 0), "steps = 0; expected an integer of at least 1"),
+    (lambda: aspic.minimize(abs, [0.]), "f: this is builtin_function_or_method; expected an Objective"),
     (lambda: aspic.Scene().add(CUBE, material="neo_hookean"), "this is str; expected a Material"),
     (lambda: aspic.Scene().add(CUBE, order=2, elastic=False), "elastic = true"),
 ])
@@ -53,6 +66,8 @@ def test_constructors_refuse_errors(make, message):
 @pytest.mark.parametrize("change, message", [
     (lambda s, b: b.pin([64]), "vertices.*64"),
     (lambda s, b: b.pin("Y > 5"), "selects no vertex"),
+    (lambda s, b: b.pin(b.vertices[:3]), r"where: dtype float64, shape \(3, 3\); expected a mask"),
+    (lambda s, b: b.pin((b.vertices[:, 1] == 0).astype(int)), r"zeros and ones.*astype\(bool\)"),
     (lambda s, b: b.pin([0], motion={"linear": {"velocity": [1, 0]}}), "velocity"),
     (lambda s, b: b.pin("Y > 0.09", motion={"linear": {"velocity": [1, 0, 0]}}), "different positions"),
     (lambda s, b: b.spring([0], stiffness=-1), "stiffness = -1"),
@@ -81,6 +96,28 @@ def test_refused_changes_leave_the_scene(change, message):
         change(scene, scene.bodies[0])
     assert scene._parts() == before
     assert aspic.Simulation(scene, record=False).step().ok
+
+
+def test_arrays_of_any_layout_give_the_same_mesh():
+    v, tets = CUBE.vertices, CUBE.tets
+    wide = np.zeros((2 * len(v), 6))
+    wide[::2, ::2] = v
+    for x in (v.tolist(), np.asfortranarray(v), v.astype(">f8"), wide[::2, ::2]):
+        np.testing.assert_array_equal(aspic.Mesh(x, tets).vertices, v)
+    for t in (tets.tolist(), np.asfortranarray(tets), *(tets.astype(kind) for kind in ("u1", "u4", "u8", "i8", ">i4"))):
+        np.testing.assert_array_equal(aspic.Mesh(v, t).tets, tets)
+
+
+def test_bodies_in_millimeters_give_a_warning():
+    scene = aspic.Scene()
+    scene.add(aspic.box(100, 1), material=aspic.Material(young=1e5)).pin([2])
+    with pytest.warns(UserWarning, match="its weight crushes it.*are millimeters, set body.body1.scale = 0.001") as found:
+        sim = aspic.Simulation(scene, record=False)
+    assert found[0].filename == __file__ and found[0].message.args[0] in sim.notes
+    scene.bodies[0].set(scale=.001)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        aspic.Simulation(scene, record=False)
 
 
 def test_springs_may_name_later_bodies():
@@ -180,7 +217,7 @@ def test_simulations_are_not_copied(use, jelly):
 @pytest.mark.parametrize("arguments, message", [
     ({"scene": CUBE}, "this is Mesh; expected a Scene"), ({"scene": None}, "this is NoneType"),
     ({"solver": 3}, "this is int; expected a dict"), ({"solver": "newtn"}, "did you mean 'newton'"),
-    ({"h": 0}, "step = 0"), ({"integrator": "euler"}, "unknown name"),
+    ({"h": 0}, "^h = 0; must be > 0"), ({"integrator": "euler"}, "unknown name"),
 ])
 def test_simulations_refuse_bad_arguments(arguments, message):
     with pytest.raises(aspic.InvalidInput, match=message):

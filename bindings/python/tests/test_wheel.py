@@ -1,5 +1,6 @@
 """The wheel that pip makes of the package."""
 import pathlib
+import platform
 import re
 import subprocess
 import sys
@@ -35,4 +36,6 @@ def test_portable_wheel_holds_the_libraries_that_a_linux_may_lack():
     assert "aspic.libs/libmuparser.so.2" in files
     assert not [name for name in files if re.search(r"/(libc|libm|libstdc\+\+|libz|ld-linux)[.-]", name)]
     assert {name.split("/")[1] for name in files if "licenses" in name}
+    assert aspic_build._newest_glibc({"a": b"\x7fELF\0GLIBC_2.9\0GLIBC_2.17\0", "b": b"\0GLIBC_2.40"}) == 17
+    assert 17 <= aspic_build._newest_glibc(files) <= int(platform.libc_ver()[1].split(".")[1])
     assert ("numpy<2" in aspic_build._metadata()) == aspic_build._needs_numpy_1()
