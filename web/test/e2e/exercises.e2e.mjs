@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { answered, downloaded, keepPicture, openSession, pageModule, startProgram } from "./harness.mjs";
+import { answered, downloaded, keepPicture, openSession, pageModule, startProgram, steering } from "./harness.mjs";
 
 const program = await startProgram("scenes/cantilever.toml");
 const { exercises } = await pageModule("exercises/exercises.ts");
@@ -11,6 +11,7 @@ const isLesson = ({ do: what }) => what === "lesson";
 
 async function openExercise(opened, { lesson, title }) {
   const { page, heard } = opened;
+  await page.getByRole("button", { name: "Lecture", exact: true }).waitFor(); // it needs the list of pages
   if (await page.locator("#left").isHidden()) await page.keyboard.press("l");
   const { lessons } = heard.messages.find(({ kind }) => kind === "hello");
   const at = lessons.findIndex(({ id }) => id.startsWith(lesson));
@@ -35,7 +36,9 @@ test("the solution of each exercise agrees with the engine", async () => {
     await opened.page.locator(".exercise summary", { hasText: "✓" }).waitFor();
     await keepPicture(opened.page, `exercise_${exercise.id}`);
   }
+  opened.heard.messages.length = 0;
   await opened.page.reload();
+  await steering(opened);
   await openExercise(opened, exercises[0]);
   assert.equal(await opened.page.getByLabel("Code of the exercise").inputValue(), exercises[0].solution);
   assert.match(await opened.page.locator(".exercise summary").innerText(), /✓/);
@@ -81,8 +84,8 @@ test("slides fill the screen and are turned by keys", async () => {
   await answered(opened, "a page", isLesson, () => page.keyboard.press("Shift+F"));
   await title.waitFor();
   const first = await title.innerText();
-  assert.ok(await page.locator("#toolbar .timeline").isHidden());
-  assert.ok(await page.getByRole("button", { name: "Step", exact: true }).isVisible());
+  await page.locator("#toolbar .timeline").waitFor({ state: "hidden" });
+  await page.getByRole("button", { name: "Step", exact: true }).waitFor();
   for (const [key, changes] of [["ArrowRight", true], ["PageUp", false]]) {
     await answered(opened, key, isLesson, () => page.keyboard.press(key));
     await page.waitForFunction(([text, other]) => (document.querySelector("#left .lesson h2").textContent !== text) === other, [first, changes]);
