@@ -61,6 +61,7 @@ test("wrong code is explained, and hints and a solution help", async () => {
   assert.match(await verdict(opened, "return 1;"), /^Line 1: A return outside a function/);
   assert.ok(await solve.isHidden());
   assert.match(await verdict(opened, "function lineSearch(f) {\n  return f.nothing();\n}"), /^Line 2: f\.nothing is not a function/);
+  assert.match(await verdict(opened, "function lineSearch() {\n  throw { message: 5, stack: 7 };\n}"), /^5$/);
   assert.match(await verdict(opened, "function lineSearch() {\n"), /Is a bracket, a text or a comment not closed\?/);
   assert.match(await verdict(opened, ""), /There is no function lineSearch/);
   const wrong = await verdict(opened, exercise.code);
@@ -73,7 +74,7 @@ test("wrong code is explained, and hints and a solution help", async () => {
   const file = await downloaded(page, () => page.getByRole("button", { name: "Save my results" }).click());
   assert.equal(file.suggestedFilename(), "exercises_Ada_Lovelace.json");
   const saved = JSON.parse(readFileSync(await file.path(), "utf8")).exercises;
-  assert.deepEqual(saved, [{ name: "Ada Lovelace", exercise: "line_search", passed: false, tries: 3, code: exercise.code }]);
+  assert.deepEqual(saved, [{ name: "Ada Lovelace", exercise: "line_search", passed: false, tries: 4, code: exercise.code }]);
   await opened.close();
 });
 
