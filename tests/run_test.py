@@ -307,6 +307,7 @@ material = { young = 1e5, poisson = 0.3, density = 300 }
         self.assertIn("a video needs even width and height", render("-o", "a.mp4", "--size", "101x100"))
         self.assertIn("MP4 has no transparency", render("-o", "a.mp4", "--transparent"))
         self.assertIn("a.bmp: must be .png", render("-o", "a.bmp"))
+        self.assertIn("the run has no sheets", render("-o", "a.png", "--step", "1", "--thickness"))
         self.assertIn("choose one of displacement", render("-o", "a.png", "--step", "1", "--color", "stress"))
         self.assertIn("choose one of front", render("-o", "a.png", "--step", "1", "--view", "above"))
         self.assertFalse((self.folder / "a.png").exists())

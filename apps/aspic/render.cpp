@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <system_error>
@@ -14,6 +15,7 @@
 #include "aspic/sweep/outcome.h"
 #include "base/error.h"
 #include "base/number_chars.h"
+#include "dynamics/model.h"
 #include "io/atomic_file.h"
 #include "results/run_directory.h"
 #include "viewer/recording.h"
@@ -135,6 +137,9 @@ int render(const RenderArguments& arguments) {
     throw InvalidInput(fmt::format("--step {}: the run has {} steps", options.step, last));
 
   const Scene scene = load_scene(scene_of_run(arguments.run));
+  const std::vector<BodyRange>& bodies = scene.simulation.model().bodies;
+  if (options.thickness && std::none_of(bodies.begin(), bodies.end(), [](const auto& body) { return body.is_sheet(); }))
+    throw InvalidInput("--thickness: the run has no sheets");
   const viewer::RecordedRun report = viewer::make_report(arguments.run, scene, {.max_bytes = kMaxBytes});
   if (!report.note.empty()) fmt::print("note: {} of {} frames are drawn\n", report.frames, report.frames_of_run);
   const std::unique_ptr<Output> output = open_output(arguments, options);

@@ -69,6 +69,7 @@ class GltfSurface {
   const std::vector<Triangle>& triangles() const { return triangles_; }
   size_t vertex_count() const { return points_.size(); }
   size_t map_count() const { return nodes_.size() + maps_.size(); }
+  size_t influence_count() const { return influences_.size(); }
 
   std::vector<Vec3d> vertices(const std::vector<GltfTransform>& transforms) const {
     const std::vector<Placement> place = places(transforms);
@@ -205,8 +206,8 @@ class GltfSurface {
         if (weights[i] == 0) continue;
         if (weights[i] < 0 || joints[i] >= static_cast<double>(maps.count))
           file_.fail("vertex " + std::to_string(i / 4) + " of " + owner + " has the weight " +
-                     std::to_string(weights[i]) + " at joint " + std::to_string(static_cast<int>(joints[i])) + " of " +
-                     std::to_string(maps.count));
+                     std::to_string(weights[i]) + " at joint " + std::to_string(static_cast<uint64_t>(joints[i])) +
+                     " of " + std::to_string(maps.count));
         influences[i / 4].push_back({maps.first + static_cast<size_t>(joints[i]), weights[i]});
       }
     }
@@ -278,7 +279,9 @@ GltfMotion parse_gltf_motion(const std::string& file, std::string_view contents,
   const GltfSurface surface(gltf);
   const GltfAnimation animation(gltf, sampling.animation);
   const double duration = animation.duration(), samples = std::ceil(duration * sampling.rate - 1e-6) + 1;
-  const auto points = static_cast<double>(surface.vertex_count() + surface.map_count() + animation.channel_count());
+  // Influences need time, but no memory.
+  const auto points = static_cast<double>(surface.vertex_count() + surface.map_count() + animation.channel_count() +
+                                          surface.influence_count() / 8);
   if (!(samples <= kMostSamples && samples * points <= kMostPoints))
     gltf.fail("the animation of " + Json(duration).dump() + " s has " + Json(samples).dump() + " samples of " +
                   std::to_string(surface.vertex_count()) + " vertices; at most 100000 and 1 GiB are read",

@@ -277,9 +277,16 @@ TEST_F(RunResults, GltfEndsAtTheLastFrame) {
   const std::vector<float> last = Pc2Reader(path("run/skins/skin_soft_bar.pc2")).sample(kRunSteps);
   ASSERT_EQ(start.size(), last.size());
   for (size_t i = 0; i < last.size(); ++i) EXPECT_NEAR(start[i] + moved[i], last[i], 1e-6);
+  const auto refusal = [&] {
+    return message_of<InvalidInput>([&] { run_glb(RunLayout(path("run")), sagging_scene()); });
+  };
+  const std::string whole = read_file(path("run/skins/skin_soft_bar.pc2"));
+  put(path("run/skins/skin_soft_bar.pc2"), whole.substr(0, whole.size() - 4) + std::string("\0\0\xc0\x7f", 4));  // NaN
+  EXPECT_THAT(refusal(), HasSubstr("skin_soft_bar.pc2: a point of sample 7 is not finite"));
+  put(path("run/skins/skin_soft_bar.pc2"), whole.substr(0, whole.size() / 2));
+  EXPECT_THAT(refusal(), HasSubstr("is cut short"));
   fs::remove_all(path("run/skins"));
-  EXPECT_THAT(message_of<InvalidInput>([&] { run_glb(RunLayout(path("run")), sagging_scene()); }),
-              HasSubstr("output.pc2 = true"));
+  EXPECT_THAT(refusal(), HasSubstr("output.pc2 = true"));
 }
 
 TEST_F(RunResults, ResumeNamesTheDamagedFile) {

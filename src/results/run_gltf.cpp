@@ -33,7 +33,14 @@ class SkinFrames {
                          std::to_string(cache_.points()) + " points; the run has " + std::to_string(frames) +
                          " frames of " + std::to_string(skin.rest.vertex_count()));
   }
-  std::vector<float> at(int frame) { return cache_.sample(frame); }
+  std::vector<float> at(int frame) {
+    std::vector<float> points = cache_.sample(frame);
+    for (const float x : points)
+      if (!std::isfinite(x))
+        throw InvalidInput(file_.string() + ": a point of sample " + std::to_string(frame) +
+                           " is not finite; run the scene again with a shorter time step");
+    return points;
+  }
 
  private:
   std::filesystem::path file_;

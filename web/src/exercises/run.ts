@@ -39,7 +39,7 @@ function serve(name: string, entry: unknown): void {
       postMessage(JSON.stringify({ results }, plain));
     } catch (error) {
       const { message = `The code throws ${String(error)}.`, stack = "" } = (error ?? {}) as Partial<Error>;
-      postMessage(JSON.stringify({ results: [], error: message, stack }));
+      postMessage(JSON.stringify({ results: [], error: String(message), stack: String(stack) }));
     }
   };
 }

@@ -9,7 +9,7 @@ const program = await startProgram("scenes/cantilever.toml");
 async function compare({ page, until }, title) {
   await page.keyboard.press("c");
   const dialog = page.getByRole("dialog");
-  await dialog.getByRole("button", { name: title }).click();
+  await dialog.getByRole("button", { name: title, exact: true }).click();
   await dialog.getByRole("button", { name: "Compare", exact: true }).click();
   await until(`side b of '${title}'`, ({ scenes, state, pictures }) => scenes.b && state.b && pictures.b);
   await dialog.waitFor({ state: "detached" });
@@ -30,7 +30,7 @@ test("each preset comparison advances two sides together", async () => {
     await toTheStart(opened);
     await compare(opened, title);
     await until("two sides", async () => (await page.locator(".side").count()) === 2);
-    await page.getByText(`B: ${label}`).waitFor();
+    await page.locator(".view-label").getByText(`B: ${label}`, { exact: true }).waitFor();
     assert.equal(heard.scenes.b.label, label);
     const reported = heard.messages.length;
     for (let i = 0; i < 3; ++i) {

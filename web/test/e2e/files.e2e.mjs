@@ -22,7 +22,7 @@ test("a workspace restores settings, comparison, camera, panels", async () => {
   await nu.press("Enter");
   await until("nu", () => settingOf(heard, "material.poisson").value === 0.2);
   await page.keyboard.press("c");
-  await page.getByRole("dialog").getByRole("button", { name: "Half the time step" }).click();
+  await page.getByRole("dialog").getByRole("button", { name: "Half the time step", exact: true }).click();
   await page.getByRole("dialog").getByRole("button", { name: "Compare", exact: true }).click();
   await until("side b", ({ scenes }) => scenes.b);
   await page.getByRole("dialog").waitFor({ state: "detached" });
@@ -72,7 +72,9 @@ test("the deformed mesh is saved in each format", async () => {
     await page.keyboard.press("Shift+M");
     const dialog = page.getByRole("dialog");
     await dialog.getByRole("combobox").first().selectOption(format);
-    return String(await read(await downloaded(page, () => dialog.getByRole("button", { name: "Save" }).click())));
+    const file = await downloaded(page, () => dialog.getByRole("button", { name: "Save", exact: true }).click());
+    await dialog.waitFor({ state: "detached" }); // takes keys
+    return String(await read(file));
   };
   const points = (await save("obj")).split("\n").filter((line) => line.startsWith("v ")).map((line) => line.split(/\s+/).slice(1, 4).map(Number));
   assert.ok(points.length > 0 && points.flat().every(Number.isFinite));

@@ -284,6 +284,9 @@ export async function pressAndWait({ page, heard, until }, key, what, condition)
   await until(what, () => heard.states > reported && condition(heard));
 }
 
+// A scene in the dialog that loads one, by its whole name.
+export const sceneButton = (page, name) => page.getByRole("dialog").locator("button.scene").filter({ has: page.getByText(name, { exact: true }) });
+
 // Presses the play key until the expected state is reached: a run may end by itself before the key is pressed.
 export const setPlaying = (opened, wanted) =>
   opened.until(wanted ? "play" : "a pause", async () => {

@@ -32,7 +32,7 @@ test("each lecture page opens scene and panel", async () => {
     await page.locator("#left .lesson h2").filter({ hasText: lesson.title }).waitFor();
     assert.ok(lesson.exercise.length > 20 && lesson.claim.length > 5, context);
     await page.locator(`[role=tab][aria-selected="true"]`, { hasText: { energy: "Energy", microscope: "Microscope", landscape: "Landscape", functions: "Functions" }[lesson.panel] }).waitFor();
-    if (lesson.panel === "energy") assert.equal(await page.getByRole("tabpanel", { name: "Energy" }).getByLabel("log").isChecked(), lesson.log === true, context);
+    if (lesson.panel === "energy") assert.equal(await page.getByRole("tabpanel", { name: "Energy" }).getByLabel("log", { exact: true }).isChecked(), lesson.log === true, context);
     if (lesson.function) await until(`the function of ${context}`, () => heard.messages.slice(reported).some(({ reply }) => reply?.formula !== undefined));
     await until(`a picture of ${context}`, ({ pictures, geometries }) => pictures.a && pictures.a.generation === geometries.a.generation);
     if (i % 6 === 1) await keepPicture(page, `lecture_${lesson.id}`);

@@ -5,7 +5,7 @@ import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { fileURLToPath } from "node:url";
-import { aspic, downloaded, drop, findBody, frames, keepPicture, openSession, pressAndWait, startProgram, temporaryFolder } from "./harness.mjs";
+import { aspic, downloaded, drop, findBody, frames, keepPicture, openSession, pressAndWait, sceneButton, startProgram, temporaryFolder } from "./harness.mjs";
 
 const program = await startProgram("scenes/cantilever.toml");
 const read = async (file) => readFileSync(await file.path());
@@ -24,7 +24,9 @@ async function savedMesh(page, format) {
   await page.keyboard.press("Shift+M");
   const dialog = page.getByRole("dialog");
   await dialog.getByRole("combobox").first().selectOption(format);
-  return read(await downloaded(page, () => dialog.getByRole("button", { name: "Save" }).click()));
+  const file = await downloaded(page, () => dialog.getByRole("button", { name: "Save", exact: true }).click());
+  await dialog.waitFor({ state: "detached" });
+  return read(file);
 }
 
 test("a paused drag is saved with the scene", async () => {
@@ -61,7 +63,7 @@ test("the motion is exported for other programs", async () => {
     await page.keyboard.press("Shift+E");
     const dialog = page.getByRole("dialog");
     await dialog.getByRole("combobox").first().selectOption(format);
-    const file = await downloaded(page, () => dialog.getByRole("button", { name: "Export" }).click());
+    const file = await downloaded(page, () => dialog.getByRole("button", { name: "Export", exact: true }).click());
     await dialog.waitFor({ state: "detached" });
     return [file.suggestedFilename(), await read(file)];
   };
@@ -102,13 +104,13 @@ test("the gallery opens and remembers a scene", async () => {
   const { page, until, close } = opened;
   await page.keyboard.press("Shift+O");
   const dialog = page.getByRole("dialog");
-  await dialog.getByRole("button", { name: /^twist/ }).waitFor();
+  await sceneButton(page, "twist").waitFor();
   await keepPicture(page, "gallery");
-  await dialog.getByRole("button", { name: /^twist/ }).click();
+  await sceneButton(page, "twist").click();
   await until("the scene", ({ scenes }) => scenes.a.name === "twist");
   await dialog.waitFor({ state: "detached" });
   await page.keyboard.press("Shift+O");
-  await dialog.locator("section").filter({ hasText: "Opened before" }).getByRole("button", { name: /^twist\.toml/ }).waitFor();
+  await dialog.locator("section").filter({ hasText: "Opened before" }).getByText("twist.toml", { exact: true }).waitFor();
   await dialog.getByRole("textbox").fill(fileURLToPath(new URL("../../../scenes/cantilever.toml", import.meta.url)));
   await page.keyboard.press("Enter");
   await until("the first scene", ({ scenes }) => scenes.a.name === "cantilever");

@@ -11,19 +11,19 @@ const kLostSocket = /WebSocket connection to .* failed|WebSocket is already in C
 test("steering passes between two pages", async () => {
   const one = await openSession(program);
   const two = await openSession(program, { watches: true });
-  await two.page.getByText("Watching").waitFor();
+  await two.page.getByText("Watching", { exact: true }).waitFor();
   await two.until("a button that does nothing", () => two.page.getByRole("button", { name: "Play", exact: true }).isDisabled());
   const before = two.heard.state.a.step;
   await pressAndWait(one, "s", "a step", () => two.heard.state.a.step === before + 1 && two.heard.pictures.a.step === before + 1 && one.heard.pictures.a.step === before + 1);
   assertSameBits(two.heard.pictures.a.positions, one.heard.pictures.a.positions);
   await two.page.keyboard.press("s"); // has no effect: the page only watches
-  await two.page.getByRole("button", { name: "Steer" }).click();
-  await one.page.getByText("Watching").waitFor();
-  await two.page.getByText("Watching").waitFor({ state: "hidden" });
+  await two.page.getByRole("button", { name: "Steer", exact: true }).click();
+  await one.page.getByText("Watching", { exact: true }).waitFor();
+  await two.page.getByText("Watching", { exact: true }).waitFor({ state: "hidden" });
   assert.equal(one.heard.state.a.step, before + 1);
   await pressAndWait(two, "s", "a step of the other", () => one.heard.state.a.step === before + 2);
   await two.close();
-  await one.page.getByText("Watching").waitFor({ state: "hidden" });
+  await one.page.getByText("Watching", { exact: true }).waitFor({ state: "hidden" });
   await pressAndWait(one, "s", "a step", () => one.heard.state.a.step === before + 3);
   await one.close();
 });
@@ -45,7 +45,7 @@ test("closing a steering page releases the body", async () => {
       }),
   });
   await three.until("a picture", ({ pictures }) => pictures.a);
-  await three.page.getByRole("button", { name: "Steer" }).click();
+  await three.page.getByRole("button", { name: "Steer", exact: true }).click();
   await one.until("watching", ({ messages }) => messages.some(({ kind, steers }) => kind === "role" && !steers));
   await three.page.evaluate((command) => window.sockets[0].send(JSON.stringify(command)), grab);
   await one.until("a grab", ({ state }) => state.a.grab);
@@ -85,8 +85,8 @@ test("malformed messages are refused, pages continue", async () => {
     window.WebSocket = function (...args) { return (window.socket = new Native(...args)); };
   }) });
   await two.until("a picture", ({ pictures }) => pictures.a);
-  await two.page.getByRole("button", { name: "Steer" }).click();
-  await one.page.getByText("Watching").waitFor();
+  await two.page.getByRole("button", { name: "Steer", exact: true }).click();
+  await one.page.getByText("Watching", { exact: true }).waitFor();
   const nonsense = [
     "", "{", "null", "[]", "42", '"do"', "{}", '{"do":"nothing"}', '{"do":7}', '{"do":"set"}', '{"id":1e300,"do":"play","do":"pause"}',
     '{"do":"set","key":"time.step","value":{}}', '{"do":"set","key":"../etc","value":1}',
@@ -113,7 +113,7 @@ test("malformed messages are refused, pages continue", async () => {
   await two.page.evaluate(() => window.socket.send(new Uint8Array([1, 2, 3, 4])));
   assert.deepEqual(two.errors.filter((error) => !kLostSocket.test(error)), []);
   await two.page.context().close();
-  await one.page.getByText("Watching").waitFor({ state: "hidden" });
+  await one.page.getByText("Watching", { exact: true }).waitFor({ state: "hidden" });
   const { step } = one.heard.state.a;
   await pressAndWait(one, "s", "a step", () => one.heard.state.a.step === step + 1);
   await until("a word about it", () => /refused/.test(program.complained), () => program.complained);
@@ -152,7 +152,7 @@ test("a dropped connection is restored with its state", async () => {
   const steers = () => until("the steering", () => page.getByRole("button", { name: "Step", exact: true }).isEnabled());
   await steers();
   await page.keyboard.press("s");
-  await page.waitForFunction(() => !document.querySelector(".place").textContent.startsWith("step 0,"));
+  await page.locator(".place").filter({ hasText: /^step 1, [\d.]+ s$/ }).waitFor();
   const known = await place();
   isCut = true;
   await links[0].server.close();

@@ -25,6 +25,7 @@ const openFolders = (page) =>
 async function withSteps(options) {
   const opened = await openSession(program, options);
   for (let step = 1; step <= kSteps; ++step) await pressAndWait(opened, "s", "a step", ({ state }) => state.a.step === step);
+  await settled(opened);
   return opened;
 }
 
@@ -33,6 +34,7 @@ test("every listed shortcut works without errors", async () => {
   const { page, errors, until, close } = opened;
   await page.keyboard.press("?");
   const dialog = page.getByRole("dialog", { name: "Keyboard shortcuts" });
+  await dialog.waitFor();
   const keys = await dialog.locator("kbd").allInnerTexts();
   assert.ok(keys.length > 30, `${keys.length} shortcuts`);
   assert.equal(new Set(keys).size, keys.length, "no key twice");
@@ -82,6 +84,7 @@ test("every control has an accessible name", async () => {
   for (const key of ["?", "c", "Shift+O", "Shift+M"]) {
     await page.keyboard.press(key);
     await page.locator("dialog[open]").waitFor();
+    await settled(opened); // with the list of scenes
     found.push(...(await nameless(page, `dialog of ${key}`)));
     await page.keyboard.press("Escape");
     await page.locator("dialog").waitFor({ state: "detached" });
@@ -143,7 +146,7 @@ test("every display control works without errors", async () => {
   }
   for (const button of await view.locator(".lil-controller button").all()) if (await button.isVisible()) await button.click();
   assert.deepEqual(errors, []);
-  await page.getByRole("button", { name: "Reset display" }).click();
+  await page.getByRole("button", { name: "Reset display", exact: true }).click();
   await page.keyboard.press("0");
   await findBody(opened);
   const { step } = opened.heard.state.a;

@@ -52,9 +52,9 @@ test("the error of the mesh is estimated on request", async () => {
   const opened = await open("Certificate");
   const { page, heard, until, close } = opened;
   for (let step = 1; step <= 5; ++step) await pressAndWait(opened, "s", "a step", ({ state }) => state.a.step === step);
-  await page.getByRole("button", { name: "Estimate" }).click();
+  await page.getByRole("button", { name: "Estimate", exact: true }).click();
   await page.locator(".mesh-error").filter({ hasText: /makes 'beam' about .*\(step\s5\)/ }).waitFor();
-  await page.getByRole("button", { name: "Show as color" }).click();
+  await page.getByRole("button", { name: "Show as color", exact: true }).click();
   await until("its color", () => heard.scenes.a.field === "mesh_error" && heard.pictures.a.values?.some((value) => value > 0));
   await keepPicture(page, "mesh_error");
   await pressAndWait(opened, "s", "a step", ({ state }) => state.a.step === 6);
@@ -105,7 +105,7 @@ test("the worst tets are listed and marked", async () => {
   const opened = await open("Microscope");
   const { page, heard, until, close } = opened;
   await pressAndWait(opened, "s", "a step", ({ state }) => state.a.step === 1);
-  await page.getByRole("button", { name: "Worst elements" }).click();
+  await page.getByRole("button", { name: "Worst elements", exact: true }).click();
   await until("the list", () => heard.messages.some(({ kind, reply }) => kind === "reply" && reply?.items?.length > 0));
   await page.locator("ol.worst li").first().waitFor();
   await keepPicture(page, "worst_elements");
@@ -140,7 +140,7 @@ test("each example function is minimized from anywhere", async () => {
   await until("the first function", () => replies().length > 0);
   const canvas = panel.locator("canvas").first();
   for (const [i, preset] of kPresets.entries()) {
-    const { reply } = await answered(opened, preset.title, isQuestion, () => panel.getByRole("button", { name: preset.title }).click());
+    const { reply } = await answered(opened, preset.title, isQuestion, () => panel.getByRole("button", { name: preset.title, exact: true }).click());
     assert.deepEqual([reply.path[0].x, reply.path[0].y], preset.start);
     assert.equal(reply.value.length, reply.samples ** 2);
     assert.ok(reply.iterations.length > 0 && reply.text !== "");

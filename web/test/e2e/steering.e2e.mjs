@@ -27,7 +27,7 @@ test("plays, pauses, steps and resets", async () => {
   const { page, heard, until, close } = opened;
   await page.getByRole("button", { name: "Play", exact: true }).click();
   await until("five steps", () => heard.state.a.step >= 5 && heard.pictures.a.step >= 1);
-  await page.getByRole("button", { name: "Pause" }).click();
+  await page.getByRole("button", { name: "Pause", exact: true }).click();
   await until("a pause", () => !heard.state.playing);
   await toTheStart(opened);
   const start = heard.pictures.a.positions;
@@ -47,6 +47,7 @@ test("the timeline rewinds by mouse and keys", async () => {
     seen[step] = heard.pictures.a.positions;
   }
   const timeline = page.getByLabel("Timeline: rewind to a step");
+  await until("the last step under its handle", async () => (await timeline.inputValue()) === "6");
   await timeline.press("ArrowLeft");
   await until("step 5", () => heard.state.a.step === 5 && heard.pictures.a.step === 5);
   assertSameBits(heard.pictures.a.positions, seen[5]);
@@ -110,7 +111,7 @@ test("Escape and leaving the window release bodies", async () => {
 test("a watching page only turns the camera", async () => {
   const one = await openSession(program);
   const two = await openSession(program, { watches: true, keepsPixels: true });
-  await two.page.getByText("Watching").waitFor();
+  await two.page.getByText("Watching", { exact: true }).waitFor();
   const box = await boxOf(two.page.locator("#views"));
   const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
   const canvas = two.page.locator("#views canvas").first();

@@ -1,7 +1,7 @@
 // Cloth in the page: it is dragged by mouse and finger, and drawn with its thickness.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { findBody, frames, keepPicture, setPlaying, shownBy } from "../e2e/harness.mjs";
+import { findBody, frames, isDrawn, keepPicture, setPlaying, shownBy } from "../e2e/harness.mjs";
 import { loadScene, openSite, places } from "./site.mjs";
 
 const distance = (a, b) => Math.hypot(...a.map((x, c) => x - b[c]));
@@ -47,13 +47,16 @@ test("sheets are drawn with their thickness", async () => {
   await loadScene(opened, "cloth");
   const canvas = opened.page.locator("#views canvas").first();
   const box = opened.page.locator("#right .lil-controller").filter({ hasText: /^Thickness of sheets$/ }).locator("input");
-  const prints = [];
-  for (let i = 0; i < 3; ++i) {
-    await frames(opened.page, 3);
-    prints.push((await shownBy(canvas)).print);
-    await box.evaluate((input) => input.click());
-  }
-  assert.notEqual(prints[1], prints[0]);
-  assert.equal(prints[2], prints[0]);
+  await opened.page.locator(".scene-name", { hasText: "cloth" }).waitFor();
+  const shown = async () => (await shownBy(canvas)).print;
+  const thin = await opened.until("a still picture", async () => {
+    const before = await shown();
+    await frames(opened.page, 4);
+    return (await isDrawn(canvas)) && before === (await shown()) && before;
+  });
+  await box.evaluate((input) => input.click());
+  await opened.until("thick sheets", async () => (await shown()) !== thin);
+  await box.evaluate((input) => input.click());
+  await opened.until("thin sheets again", async () => (await shown()) === thin);
   await opened.close();
 });

@@ -4,7 +4,7 @@ import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { pathToFileURL } from "node:url";
-import { downloaded, drop, findBody, frames, isDrawn, keepPicture, pageModule, pressAndWait, settled, temporaryFolder } from "../e2e/harness.mjs";
+import { downloaded, drop, findBody, frames, isDrawn, keepPicture, pageModule, pressAndWait, sceneButton, settled, temporaryFolder } from "../e2e/harness.mjs";
 import { hashesIn, loadScene, openSite, places, takeSteps } from "./site.mjs";
 
 for (const [place, address] of Object.entries(places)) {
@@ -38,8 +38,8 @@ for (const [place, address] of Object.entries(places)) {
 test("the page works in a sandboxed frame", async () => {
   const opened = await openSite(`${places["a web server"]}frame`);
   const frame = opened.page.frameLocator("iframe");
-  await frame.getByRole("button", { name: "1 iteration" }).waitFor();
-  await frame.getByRole("button", { name: /^Step/ }).click();
+  await frame.getByRole("button", { name: "1 iteration", exact: true }).waitFor();
+  await frame.getByRole("button", { name: "Step", exact: true }).click();
   await opened.until("a step", ({ state, pictures }) => state.a.step === 1 && pictures.a.step === 1);
   await opened.close();
 });
@@ -89,7 +89,7 @@ test("a body is hidden until its first picture", async () => {
   await opened.until("the bunny", () => isDrawn(canvas));
   await opened.page.evaluate(() => void (window.dropsPictures = true));
   await opened.page.keyboard.press("Shift+O");
-  await opened.page.getByRole("dialog").getByRole("button", { name: /^cantilever/ }).click();
+  await sceneButton(opened.page, "cantilever").click();
   await opened.until("the geometry", ({ scenes, geometries }) => scenes.a.name === "cantilever" && geometries.a.generation === scenes.a.generation);
   await frames(opened.page, 4);
   assert.equal(await isDrawn(canvas), false);

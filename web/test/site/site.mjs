@@ -7,7 +7,7 @@ import { createServer } from "node:http";
 import { createRequire } from "node:module";
 import { dirname, join } from "node:path";
 import { pathToFileURL } from "node:url";
-import { aspic, atTheEnd, openPage, pageModule, pressAndWait, root, temporaryFolder } from "../e2e/harness.mjs";
+import { aspic, atTheEnd, openPage, pageModule, pressAndWait, root, sceneButton, temporaryFolder } from "../e2e/harness.mjs";
 
 export const testsAll = process.env.ASPIC_ALL === "1"; // instead of samples
 
@@ -50,7 +50,7 @@ export const hashesIn = (messages) => messages.flatMap(({ kind, side, steps }) =
 
 export async function loadScene({ page, until }, name) {
   await page.keyboard.press("Shift+O");
-  await page.getByRole("dialog").getByRole("button", { name: new RegExp(`^${name}`) }).click();
+  await sceneButton(page, name).click();
   await until(`the scene ${name}`, ({ scenes, pictures, geometries }) => scenes.a.name === name && pictures.a.generation === geometries.a.generation);
   await page.getByRole("dialog").waitFor({ state: "detached" }); // takes keys
 }

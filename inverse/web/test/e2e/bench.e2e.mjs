@@ -35,7 +35,7 @@ async function openBench(more = {}) {
 async function pressIn(opened, depth, right = 0) {
   const { page, heard, until } = opened;
   if (heard.state.a.tool) {
-    await page.getByRole("button", { name: "Lift" }).click();
+    await page.getByRole("button", { name: "Lift", exact: true }).click();
     const step = heard.state.a.step;
     await until("no indenter", () => heard.state.a.tool === null && (!heard.state.playing || heard.state.a.step > step + 2));
   }
@@ -64,7 +64,7 @@ test("the gauge shows force, depth and radius", async () => {
   await page.getByLabel("Depth [mm]").fill("6");
   await page.getByLabel("Depth [mm]").press("Enter");
   await until("more force", () => heard.state.a.tool.depth > 0.0059 && heard.state.a.tool.force > 1.5 * before);
-  await page.getByRole("button", { name: "Lift" }).click();
+  await page.getByRole("button", { name: "Lift", exact: true }).click();
   await until("no indenter", () => heard.state.a.tool === null);
   await frames(page);
   assert.equal(await gauge.textContent(), "–");

@@ -85,7 +85,7 @@ test("maps show whole and cut bodies", async () => {
   await changes("the other half", () => page.getByLabel("other half").click());
   await changes("the cut moved", () => page.getByLabel("Position of the cut").fill("0.8"));
   await changes("the markers", () => page.getByLabel("markers", { exact: true }).click());
-  await changes("no edges", () => page.getByLabel("edges").click());
+  await changes("no edges", () => page.getByLabel("edges", { exact: true }).click());
   await changes("another quantity", () => page.locator(".map select").first().selectOption("poisson"));
   await changes("dark", () => page.getByRole("button", { name: "Light or dark" }).click());
   await close();
@@ -99,7 +99,7 @@ test("the worst markers belong to the chosen case", async () => {
   assert.equal(names.length, 1 + 6);
   await cases.selectOption({ index: 2 });
   const rows = part.locator("tbody tr");
-  assert.ok((await rows.count()) > 0);
+  await rows.first().waitFor();
   for (const row of await rows.all()) assert.equal(await row.locator("td").nth(1).innerText(), names[2]);
   await close();
 });
