@@ -31,6 +31,15 @@ test("the engine runs every scene and every page of the lecture", async () => {
 
 const [kMostEngine, kMostPage] = [1e6, 1.8e6]; // bytes, compressed: the engine as in the page, the page by gzip
 
+test("commands are refused in words, with threads as without", async () => {
+  for (const workers of [0, 3]) {
+    const opened = await engineInNode("/scenes/cantilever.toml", workers);
+    const commands = [{ do: "load", scene: "/scenes/cantilever.toml", overrides: ["nonsense=1"] }, { do: "set", side: "a", key: "time.step", value: -1 }];
+    assert.equal(refusals(opened, commands).length, 2, `${workers} workers`);
+    opened.engine.PThread?.terminateAllThreads();
+  }
+});
+
 test("the sizes are within their limits", () => {
   const engine = element("engine-program").module.length * 0.75;
   const page = gzipSync(html, { level: 9 }).length;
