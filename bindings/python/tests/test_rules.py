@@ -152,7 +152,7 @@ def test_one_number_holds_for_all_axes_of_a_box():
 
 @pytest.mark.parametrize("size, cells, message", [
     ((1, 2), 2, r"size: shape \(2,\); expected three numbers, or one"), (1, 2.5, "cells = 2.5: must be integers"),
-    (1, 0, "at least 1"), (-1, 2, "above"), (np.nan, 2, "size = nan"), ("big", 2, "size = 'big'; expected three numbers"),
+    (1, 0, "at least 1"), (-1, 2, "each number must be positive"), (np.nan, 2, "size = nan"), ("big", 2, "size = 'big'; expected three numbers"),
     (1, np.inf, "cells = inf"), (1, 10**6, "at most 2e.07"), (None, 2, "size"),
 ])
 def test_bad_boxes_get_one_line(size, cells, message):
