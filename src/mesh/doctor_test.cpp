@@ -118,6 +118,18 @@ TEST(DoctorOfTets, FindsTetsFoldedOntoNeighbor) {
   EXPECT_THAT(names(diagnose(mesh)), IsEmpty());
 }
 
+TEST(DoctorOfTets, FindsBentBarThatOverlapsItself) {
+  for (const double turn : {5.5, 7.0}) {  // [rad]; a full one is 6.28
+    TetMesh bar = make_box({0, 0, 0}, {1, 1, 1}, {40, 3, 3});
+    for (Vec3d& X : bar.rest) {
+      const double angle = turn * X[0], radius = 3 - X[1];
+      X = {{radius * std::sin(angle), -radius * std::cos(angle), X[2]}};
+    }
+    const std::vector<std::string> found = names(diagnose(bar));
+    EXPECT_THAT(found, turn < 6 ? ElementsAre() : ElementsAre("overlapping_tets"));
+  }
+}
+
 TEST(DoctorOfTets, FindsPartsConnectedByEdgeOrCorner) {
   TetMesh hinge;
   hinge.rest = {{{0, 0, 0}}, {{0, 0, 1}}, {{1, 0, 0}}, {{1, 1, 0}}, {{-1, 0, 0}}, {{-1, -1, 0}}};

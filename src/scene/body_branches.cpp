@@ -44,8 +44,7 @@ std::vector<double> shear_moduli(PlacedBody& body, Value& scene, const FieldScop
         scene["ratio"].place,
         "ratio: body '" + body.name() + "' has elastic = false, so its shear modulus " + "is 0; set `shear` instead");
   const std::vector<MaterialParameters> parameters = elastic.parameters();
-  for (int t = 0; t < body.mesh.tet_count(); ++t)
-    shear[t] *= parameters[body.numbering.tet.from_user(t)].lame.mu;
+  for (int t = 0; t < body.mesh.tet_count(); ++t) shear[t] *= parameters[body.numbering.tet.from_user(t)].lame.mu;
   return shear;
 }
 
