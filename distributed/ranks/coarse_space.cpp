@@ -157,8 +157,9 @@ bool CoarseSpace::factorize(const BlockSparse& H) {
   // Own pieces have the same neighbors in the local and in the coarse pattern, in the same order.
   const std::vector<std::int64_t>& start = local_.pattern.row_start;
   const auto begin = local_matrix_->block.begin();
-  coarse_matrix_->block = gather_all(std::vector<Mat3d>(begin + start[kFunctions * first_local_],
-                                                        begin + start[kFunctions * (first_local_ + own_pieces_)]));
+  const std::vector<Mat3d> blocks = gather_all(std::vector<Mat3d>(
+      begin + start[kFunctions * first_local_], begin + start[kFunctions * (first_local_ + own_pieces_)]));
+  coarse_matrix_->block.assign(blocks.begin(), blocks.end());
   return share_.all(cholesky_.factorize(*coarse_matrix_));
 }
 
