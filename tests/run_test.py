@@ -59,6 +59,10 @@ class Run(CommandLine):
         self.aspic("run", scene)
         self.assertIn("--force", self.aspic("run", scene, code=2).stderr)
         self.aspic("run", scene, "--force")
+        self.write("box.mesh", box_mesh())
+        self.aspic("run", "box.mesh", "--steps", "1")
+        self.write("box.mesh", "not loaded")
+        self.assertIn("--force", self.aspic("run", "box.mesh", code=2).stderr)
 
     def test_the_resolved_scene_gives_the_same_results(self):
         self.aspic("run", self.beam(), "--out", "a")

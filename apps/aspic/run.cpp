@@ -27,6 +27,7 @@
 #include "results/explanation.h"
 #include "results/run_directory.h"
 #include "results/run_directory_layout.h"
+#include "results/run_folder.h"
 #include "results/trace.h"
 #include "scene/scene.h"
 
@@ -68,6 +69,13 @@ void announce(const RunArguments& arguments, const std::string& what) {
 
 constexpr int kManyTets = 300'000;  // a frame of this size takes a second to write
 
+// Before the scene is loaded: filling a surface with tets may take minutes.
+void refuse_earlier_results(const RunArguments& arguments) {
+  const bool is_known = !arguments.out.empty() || arguments.input.extension() != ".toml";  // a scene has a name of its own
+  if (is_known && !arguments.force && !arguments.continues && fs::exists(arguments.input))
+    refuse_run(RunLayout(directory_to_resume(arguments)));
+}
+
 Scene load(const RunArguments& arguments) {
   const Announce announced = [&](const std::string& what) { announce(arguments, what); };
   if (arguments.resume) {
@@ -84,6 +92,7 @@ Scene load(const RunArguments& arguments) {
     throw InvalidInput(
         fmt::format("{0}: is a directory; to continue a run: aspic run {0} --resume", arguments.input.string()));
   }
+  refuse_earlier_results(arguments);
   return load_scene(arguments.input,
                     {.overrides = arguments.overrides, .announce = announced, .mesher_seconds = arguments.time_limit});
 }

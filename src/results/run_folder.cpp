@@ -41,6 +41,11 @@ void create_folder(const fs::path& folder) {
                        "; choose a writable directory with --out");
 }
 
+void refuse_run(const RunLayout& layout) {
+  if (!layout.holds_run() || layout.is_barely_begun()) return;
+  throw InvalidInput(layout.root().string() + ": already contains a run; --force replaces it, --resume continues it");
+}
+
 void make_room(const RunLayout& layout, const SceneInputs& inputs, ExistingRun existing) {
   const std::string name = layout.root().string();
   std::error_code error;
@@ -49,9 +54,7 @@ void make_room(const RunLayout& layout, const SceneInputs& inputs, ExistingRun e
   if (!layout.holds_run()) {
     throw InvalidInput(name + ": is not empty and contains no run; choose another directory, or empty this one");
   }
-  if (existing == ExistingRun::refuse) {
-    throw InvalidInput(name + ": already contains a run; --force replaces it, --resume continues it");
-  }
+  if (existing == ExistingRun::refuse) refuse_run(layout);
   layout.refuse_links();
   std::vector<fs::path> needed;  // inputs of the new run may lie in the old one
   for (const auto& [_, source] : inputs.files) needed.push_back(source);

@@ -11,6 +11,7 @@ namespace aspic {
 
 // All throw InvalidInput.
 void create_folder(const std::filesystem::path& folder);
+void refuse_run(const RunLayout& layout);  // the folder contains a run
 // Removes an earlier run except its files among `inputs`, or refuses to.
 void make_room(const RunLayout& layout, const SceneInputs& inputs, ExistingRun existing);
 void require_checkpoint(const RunLayout& layout);  // the folder contains a run with a checkpoint

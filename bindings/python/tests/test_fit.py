@@ -183,6 +183,9 @@ def test_parameters_are_checked():
     for bad, message in ((theta[:2], "shape"), (-theta, "mu must be positive"), (theta * np.nan, "finite")):
         with pytest.raises(aspic.InvalidInput, match=message):
             equilibrium.solve(bad)
+    for poisson in (.5, -1, np.array([.3, .6])):
+        with pytest.raises(aspic.InvalidInput, match="less than 0.5"):
+            aspic.lame(1e5, poisson)
 
 
 def test_verification_passes():
