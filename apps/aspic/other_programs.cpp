@@ -34,7 +34,7 @@ std::string beside(const std::string& program) {
 
 const char* remedy_for(const std::string& program) {
   return program == kMesher ? "build it (ASPIC_MESHER=ON, needs libcgal-dev) or put it on the PATH"
-                            : "build the folder inverse of Aspic's sources, or put the program on the PATH";
+                            : "in Aspic's sources `./run fit` builds it; or put the program on the PATH";
 }
 
 }  // namespace

@@ -32,8 +32,8 @@ size_t terminal_width(std::FILE* stream) {  // [characters]
 }
 
 std::string step_text(const StepReport& report, int last) {
-  return fmt::format("step {}/{}  t {:.4g} s  {} it  E {:.4g} J  {}", report.step, last, report.time, report.iterations,
-                     report.kinetic + report.potential_total, to_string(report.status));
+  return fmt::format("step {}/{}  t {:.4g} s  {} it  energy {:.4g} J  {}", report.step, last, report.time,
+                     report.iterations, report.kinetic + report.potential_total, to_string(report.status));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <system_error>
@@ -33,7 +34,8 @@ struct RenderArguments {
   bool wires = true, thickness = false, dark = false, transparent = false, every_frame = false;
 };
 
-constexpr size_t kMaxBytes = 100'000'000;  // limit of the page, for browsers
+constexpr std::chrono::seconds kLineInterval(10);  // between lines of progress in a pipe
+constexpr size_t kMaxBytes = 100'000'000;          // limit of the page, for browsers
 
 viewer::RenderOptions render_options(const RenderArguments& arguments) {
   if (!std::isfinite(arguments.fps) || !std::isfinite(arguments.speed))
@@ -146,10 +148,16 @@ int render(const RenderArguments& arguments) {
   catch_interrupts();
   const bool is_terminal = ::isatty(STDOUT_FILENO) != 0;
   int drawn = 0;
+  auto shown = std::chrono::steady_clock::now() - kLineInterval;
   const auto take = [&](int index, int count, std::string_view png) {
     output->add(index, png);
     drawn = index + 1;
+    const auto now = std::chrono::steady_clock::now();
     if (is_terminal) fmt::print("\r{} of {} pictures", drawn, count);
+    if (!is_terminal && count > 1 && now - shown >= kLineInterval) {
+      fmt::print("{} of {} pictures\n", drawn, count);
+      shown = now;
+    }
     std::fflush(stdout);
   };
   const viewer::RenderEnd end =

@@ -71,7 +71,8 @@ constexpr int kManyTets = 300'000;  // a frame of this size takes a second to wr
 
 // Before the scene is loaded: filling a surface with tets may take minutes.
 void refuse_earlier_results(const RunArguments& arguments) {
-  const bool is_known = !arguments.out.empty() || arguments.input.extension() != ".toml";  // a scene has a name of its own
+  const bool is_known =
+      !arguments.out.empty() || arguments.input.extension() != ".toml";  // a scene has a name of its own
   if (is_known && !arguments.force && !arguments.continues && fs::exists(arguments.input))
     refuse_run(RunLayout(directory_to_resume(arguments)));
 }

@@ -111,8 +111,10 @@ void print_loss(std::FILE* stream, const RunTotals& totals, const std::string& b
     return;
   }
   const bool is_gradual = totals.gradual_loss > totals.numerical_loss / 2;
-  fmt::print(stream, "loss       numerical loss {:.3g} J, {:.0f} % of the energy of motion{}\n", totals.numerical_loss,
-             100 * share, is_gradual && !better_scheme.empty() ? "; " + better_scheme + " loses less" : "");
+  const std::string part = share < 1 ? fmt::format("{:.0f} % of the energy of motion", 100 * share)
+                                     : fmt::format("in motions of at most {:.3g} J", energy_of_motion(totals));
+  fmt::print(stream, "loss       numerical loss {:.3g} J, {}{}\n", totals.numerical_loss, part,
+             is_gradual && !better_scheme.empty() ? "; " + better_scheme + " loses less" : "");
 }
 
 void print_contact(std::FILE* stream, const RunTotals& totals, const RunEnd& end) {

@@ -185,12 +185,14 @@ class Scatterer {
       numbers[body].push_back(t);
     }
     scene.mesh.tets = arrange(corners, numbers, scene.share);
+    std::vector<std::vector<MaterialParameters>> parameters;
+    for (const auto& V : model.elasticity) parameters.push_back(V->parameters());
     body = 0;
     for (int& t : scene.share.user_tet) {
       while (t >= model.bodies[body].first_tet + model.bodies[body].tet_count) ++body;
       if (!model.mesh.region.empty()) scene.mesh.region.push_back(model.mesh.region[t]);
       scene.density.push_back(model.density[t]);
-      scene.parameters.push_back(model.elasticity[body]->parameters()[t - model.bodies[body].first_tet]);
+      scene.parameters.push_back(parameters[body][t - model.bodies[body].first_tet]);
       t = model.numbering.tet.to_user(t);
     }
   }

@@ -12,8 +12,10 @@ class SharedElasticity : public TetElasticity {
  public:
   SharedElasticity(ElasticityOfRank parts, const Share& share)
       : counted_(std::move(parts.counted)), halo_(std::move(parts.halo)), share_(share) {
-    for (const TetElasticity* part : {counted_.get(), halo_.get()})
-      parameters_.insert(parameters_.end(), part->parameters().begin(), part->parameters().end());
+    for (const TetElasticity* part : {counted_.get(), halo_.get()}) {
+      const std::vector<MaterialParameters> own = part->parameters();
+      parameters_.insert(parameters_.end(), own.begin(), own.end());
+    }
   }
 
   std::string_view name() const override { return counted_->name(); }
@@ -43,7 +45,7 @@ class SharedElasticity : public TetElasticity {
     halo_->evaluate(x, fields);
   }
   int parameter_count() const override { return counted_->parameter_count(); }
-  std::span<const MaterialParameters> parameters() const override { return parameters_; }
+  std::vector<MaterialParameters> parameters() const override { return parameters_; }
   void set_parameters(std::span<const MaterialParameters> parameters) override {
     parameters_.assign(parameters.begin(), parameters.end());
     counted_->set_parameters(parameters.first(counted_tets()));

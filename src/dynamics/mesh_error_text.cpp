@@ -12,7 +12,8 @@
 namespace aspic {
 namespace {
 
-constexpr double kEnough = 0.02;   // error that needs no remedy; quadratic tets reach it
+constexpr double kEnough = 0.02;  // error that needs no remedy; quadratic tets reach it
+constexpr double kNearlyEnough = 1.5 * kEnough;
 constexpr double kLocking = 0.45;  // Poisson's ratio above which finer linear tets help slowly
 constexpr double kFarFromIt = 1;   // error above which the prediction of the edges is too optimistic
 constexpr double kClose = 0.85;    // edges that are no remedy, relative to the present ones
@@ -51,7 +52,7 @@ double largest_error(const BodyMeshError& body) {
 }
 
 std::string remedy(const Model& model, size_t body, double k) {
-  if (k <= kEnough) return "";
+  if (k <= kNearlyEnough) return "";
   const std::string reach = " would reach about 2 % where the solution is smooth.";
   const double edge = mean_edge(model.mesh, model.bodies[body]), fine = finer(edge * edge_factor(k, kEnough));
   if (k > kFarFromIt || largest_poisson(*model.elasticity[body]) > kLocking || fine > kClose * edge)

@@ -9,7 +9,8 @@
 namespace aspic {
 
 // The minimizer is that of E with the coefficients evaluated there. Before, coefficients are updated at the first
-// iterate and where the forces have fallen below those after the last update.
+// iterate and where the forces have fallen below those after the last update, but after many updates only at
+// minimizers: near the end, forces that come from one Newton step keep the updates from settling.
 class LagUpdates {
  public:
   using End = std::optional<Status>;  // empty: the minimization continues
@@ -26,7 +27,8 @@ class LagUpdates {
   // Returns whether to update at x, where the minimization would continue or end otherwise.
   bool is_due(const MinimizeReport& report, End end) const {
     if (is_current_) return false;
-    return end ? is_success(*end) : report.reached <= std::max(kProgress * changed_, report.threshold);
+    return end ? is_success(*end)
+               : counted_ <= kEarly && report.reached <= std::max(kProgress * changed_, report.threshold);
   }
   void update(std::span<const double> x) {
     E_->update_lagged(x, ++counted_ > kTurning);
@@ -57,6 +59,7 @@ class LagUpdates {
  private:
   // Updates with all directions. Normals rotate within a small gap around an edge, and updates would alternate.
   static constexpr int kTurning = 12;
+  static constexpr int kEarly = 24;           // updates before those at minimizers alone
   static constexpr int kWithoutProgress = 2;  // added to the count for one that did not reduce the forces
   static constexpr double kProgress = 0.9;    // factor of the forces that counts as progress
   static constexpr double kNoise = 100;       // forces below this multiple of their rounding error are noise

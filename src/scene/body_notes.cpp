@@ -93,8 +93,6 @@ std::string poisson_remedy(const Value& material) {
 }
 
 void note_weight(const PlacedBody& body, const Means& mean, const Vec3d& gravity, std::vector<std::string>& notes) {
-  const Value& scene = body.scene;
-  if (!scene.find("pin") && !scene.find("spring")) return;  // the body falls
   const double strain = mean.density * extent(body.mesh.rest, gravity) / mean.young;
   if (!(strain > kCrushed)) return;
   const std::string crushed = "body '" + body.name() +
@@ -153,11 +151,12 @@ void note_start(const PlacedBody& body, std::vector<std::string>& notes) {
   note_lost_digits(body, notes);
 }
 
-void note_stiffness(const PlacedBody& body, const BodyMaterial& material, const Vec3d& gravity,
+void note_stiffness(const PlacedBody& body, const BodyMaterial& material, const Vec3d& gravity, bool has_obstacles,
                     std::vector<std::string>& notes) {
   if (!body.scene["elastic"].boolean() || body.mesh.tets.empty()) return;
   const Means mean = means(body.mesh, material);
-  note_weight(body, mean, gravity, notes);
+  const bool is_held = body.scene.find("pin") || body.scene.find("spring");
+  if (is_held || has_obstacles) note_weight(body, mean, gravity, notes);  // else it falls
   note_diamond(body, mean, notes);
   note_unbounded(body, material, notes);
 }

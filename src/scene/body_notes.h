@@ -12,7 +12,7 @@ void note_start(const PlacedBody& body, std::vector<std::string>& notes);
 
 // Adds notes about a body crushed by its own weight or stiffer than any material, probably because of a modulus in
 // another unit, and about an energy without a minimum. `gravity` in [m/s^2].
-void note_stiffness(const PlacedBody& body, const BodyMaterial& material, const Vec3d& gravity,
+void note_stiffness(const PlacedBody& body, const BodyMaterial& material, const Vec3d& gravity, bool has_obstacles,
                     std::vector<std::string>& notes);
 
 // Adds a note about parts of a body that share no vertex, and parts that no pin fixes. Requires the pins of the model.

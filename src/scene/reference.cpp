@@ -134,7 +134,7 @@ const char* const kIntroduction =
     "`mesh_hash`. It is bit-reproducible.\n"
     "* Dead loads (gravity, `traction`, `force`) have the energy -f . x about the origin, so only differences have a "
     "meaning.\n"
-    "* A mesh runs without a scene, with defaults that are printed with their reasons.\n\n";
+    "* A mesh runs without a scene, with other defaults (`young` for its weight), printed with reasons.\n\n";
 
 }  // namespace
 

@@ -191,7 +191,8 @@ class SceneBuilder {
     for (PlacedBody& body : bodies_) {
       const Renumbering& tet = body.numbering.tet;
       const BodyMaterial material = body_material(body, files_, source_.notes);
-      note_stiffness(body, material, source_.document.find("gravity")->vector(), warnings_);
+      note_stiffness(body, material, source_.document.find("gravity")->vector(),
+                     source_.document.find("obstacle") != nullptr, warnings_);
       if (!body.mesh.sheet.empty()) {
         model_.elasticity.push_back(sheet_elasticity(body, material, held, model_));
         append_to(density_of_sheets, material.density);

@@ -117,7 +117,8 @@ class DerivativeReport:
 
     @staticmethod
     def _line(name, check):
-        line = f"{name}: smallest relative error {check['smallest_error']:.1e}, order {check['order']:.1f}"
+        order = "exact" if check["order"] != check["order"] else f"order {check['order']:.1f}"  # NaN: only round-off
+        line = f"{name}: smallest relative error {check['smallest_error']:.1e}, {order}"
         if check["passed"]:
             return line + ": correct"
         place = f"entry {check['row']}" + (f", {check['column']}" if check["column"] >= 0 else "")
