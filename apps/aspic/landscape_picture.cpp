@@ -41,10 +41,12 @@ Chart line_search_chart(const Landscape& landscape) {
     add(slide, point.alpha, point.slide_bound);
   }
   for (const Trial& trial : landscape.tried) add(trial.accepted ? accepted : rejected, trial.alpha, trial.value);
+  std::vector<Series> series = {value, model, textbook, slide, accepted};
+  if (!rejected.x.empty()) series.push_back(rejected);
   return {.title = "Line search: " + title(landscape),
           .x = {.label = "alpha"},
           .y = value_axis(landscape),
-          .series = {value, model, textbook, slide, rejected, accepted}};
+          .series = std::move(series)};
 }
 
 SurfacePlot slice_surface(const Landscape& landscape) {

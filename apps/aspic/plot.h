@@ -74,7 +74,7 @@ struct MarkedPoint {
 struct SurfacePlot {
   std::string title, x_label = "x", y_label = "y", z_label = "z";
   SampledFunction function;
-  std::optional<SampledFunction> model = {};  // second surface above it, translucent
+  std::optional<SampledFunction> model = {};  // drawn as a grid of lines
   std::string model_label = {};
   std::vector<MarkedPoint> points = {};
   double azimuth = 40, elevation = 35;           // view direction [degrees]

@@ -115,7 +115,7 @@ void draw(const std::filesystem::path& path, const SurfacePlot& surface) {
                        number(surface.azimuth)));
   plot.add("set pm3d clip z depthorder base lighting primary 0.4 specular 0.15 border lc rgb '#90203040' lw 0.3");
   plot.add("set key at screen 0.52, 0.085 center center horizontal width -2 maxrows 2");
-  if (surface.model) plot.add("set style fill transparent solid 0.7");
+  plot.add("set xtics offset -0.8,-0.2\nset ytics offset 0.8,-0.2");  // the last ones meet in a corner
   plot.add("set palette defined (0 '#2c5f8a', 0.4 '#7fb0cf', 1 '#f2f6f9')\nunset colorbox");
   plot.add(
       fmt::format("set border 127+256+512 lc rgb '#9a9a9a' lw 0.6\nset grid x y z lc rgb '{}' lw 0.6 lt 1", kGrid));
@@ -124,9 +124,9 @@ void draw(const std::filesystem::path& path, const SurfacePlot& surface) {
   std::string layers = fmt::format("splot {} using 1:2:3 with pm3d notitle", plot.data_file(grid_table(f)));
   if (surface.model)
     layers += fmt::format(
-        ", {} using 1:2:3 with pm3d fillcolor rgb '#e69f00' notitle, NaN with points pt 5 ps 1.6 "
-        "lc rgb '#e69f00' title {}",
-        plot.data_file(grid_table(*surface.model)), label(surface.model_label));
+        ", NaN with points pt 5 ps 1.6 lc rgb '#7fb0cf' title {}"
+        ", {} every 2:2 using 1:2:3 with lines lw 0.8 lc rgb '#e69f00' title {}",
+        label(surface.z_label), plot.data_file(grid_table(*surface.model)), label(surface.model_label));
   int next = 1;
   for (const MarkedPoint& point : surface.points) {  // labels, because surfaces could hide points
     const std::string mark = fmt::format("pt 7 ps 1.1 lc rgb {}", color(next++));
