@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "optimize/gradient_descent.h"
+#include "optimize/lag_updates.h"
 #include "optimize/newton.h"
 #include "optimize/test_functions.h"
 
@@ -121,6 +122,22 @@ class Alternating : public PlanarFunction, public HasLag {
   bool relaxes_;
   double c_ = 0, before_ = 0;
 };
+
+TEST(LagUpdates, LateOnesAreMadeAtMinimizersAlone) {
+  Alternating f(false);
+  LagUpdates lag;
+  lag.begin(&f);
+  MinimizeReport report;
+  const std::vector<double> x = {0, 0, 0};
+  int early = 0;
+  for (report.reached = 1; lag.note_step(), lag.is_due(report, {}) && early < 100; report.reached /= 2, ++early) {
+    lag.update(x);
+    lag.end_after(report, 0, {}, {});
+  }
+  EXPECT_GT(early, 20);
+  EXPECT_LT(early, 100);
+  EXPECT_TRUE(lag.is_due(report, Status::converged));
+}
 
 TEST(Minimize, AlternatingUpdatesAreRelaxed) {
   for (const bool relaxes : {true, false}) {
