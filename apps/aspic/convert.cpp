@@ -83,7 +83,9 @@ int convert(const ConvertArguments& arguments) {
                                      arguments.out.string()));
     }
   }
-  throw InvalidInput(fmt::format("{}: {} can be read but not written", arguments.out.string(), format.name));
+  const std::string remedy =
+      format.extension == ".glb" ? "; a run can be written: aspic convert out/NAME NAME.glb" : "";
+  throw InvalidInput(fmt::format("{}: {} can be read but not written{}", arguments.out.string(), format.name, remedy));
 }
 
 std::string format_table() {

@@ -23,7 +23,8 @@ struct Viewer {
 const std::array<Viewer, 4> kViewers = {{
     {"", ".pvd", "ParaView: open {}"},
     {"", ".usda", "USD viewers: open {}"},
-    {"skins", ".pc2", "Blender: import the .obj beside it, add a Mesh Cache modifier with {}"},
+    {"skins", ".pc2",
+     "Blender: a Mesh Cache modifier with {}, on the .obj beside it or on your mesh if it has its vertices"},
     {"", ".csv", "spreadsheet: {}"},
 }};
 

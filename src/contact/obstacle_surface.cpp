@@ -21,25 +21,35 @@ TriMesh square(const ContactPlane& plane, const Box& bodies) {
   return {{foot - a - b, foot + a - b, foot + a + b, foot - a + b}, {{0, 1, 2}, {0, 2, 3}}};
 }
 
-// Triangulates rings from one end of a capsule to the other.
+// Triangulates rings between the poles of a capsule; its equator occurs at both ends.
 TriMesh capsule(const Vec3d& a, const Vec3d& b, double radius) {
-  constexpr int kAround = 32, kRings = 16;  // rings: even
-  const Vec3d axis = norm(b - a) > 0 ? (1 / norm(b - a)) * (b - a) : Vec3d{{0, 1, 0}};
+  constexpr int kAround = 32, kRings = 16;  // kRings: angles from pole to pole, even
+  const double length = norm(b - a);
+  const Vec3d axis = length > 0 ? (1 / length) * (b - a) : Vec3d{{0, 1, 0}};
   const auto [u, v] = tangents({.r = axis, .d = 1});
   TriMesh mesh;
-  for (int i = 0; i <= kRings + 1; ++i) {
-    const int step = i <= kRings / 2 ? i : i - 1;  // the equator occurs twice, at both ends
-    const double polar = std::numbers::pi * step / kRings;
+  const auto add_ring = [&](const Vec3d& center, double polar) {
     for (int k = 0; k < kAround; ++k) {
       const double angle = 2 * std::numbers::pi * k / kAround;
       const Vec3d out = std::cos(angle) * u + std::sin(angle) * v;
-      mesh.vertices.push_back((i <= kRings / 2 ? a : b) + radius * (std::sin(polar) * out - std::cos(polar) * axis));
-      if (i == 0) continue;
-      const int here = i * kAround + k, next = i * kAround + (k + 1) % kAround;
-      mesh.triangles.push_back({here - kAround, next - kAround, next});
-      mesh.triangles.push_back({here - kAround, next, here});
+      mesh.vertices.push_back(center + radius * (std::sin(polar) * out - std::cos(polar) * axis));
     }
+  };
+  mesh.vertices.push_back(a - radius * axis);
+  for (int i = 1; i < kRings; ++i) {
+    const double polar = std::numbers::pi * i / kRings;
+    if (i <= kRings / 2) add_ring(a, polar);
+    if (i > kRings / 2 || (i == kRings / 2 && length > 0)) add_ring(b, polar);
   }
+  const int last = mesh.vertex_count();  // the other pole
+  mesh.vertices.push_back(b + radius * axis);
+  for (int ring = 1; ring < last; ring += kAround)
+    for (int k = 0; k < kAround; ++k) {
+      const int here = ring + k, next = ring + (k + 1) % kAround;
+      const bool is_first = ring == 1, is_last = ring + kAround == last;
+      mesh.triangles.push_back({is_first ? 0 : here - kAround, next, here});
+      mesh.triangles.push_back({here, next, is_last ? last : next + kAround});
+    }
   return mesh;
 }
 
