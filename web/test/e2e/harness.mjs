@@ -16,7 +16,7 @@ export const kPatience = 180_000; // [ms]; two weak cores that render without a 
 // Imports a module of the page.
 export async function pageModule(name) {
   const entry = join(root, "web/src", name);
-  const { outputFiles } = await build({ entryPoints: [entry], bundle: true, format: "esm", write: false });
+  const { outputFiles } = await build({ entryPoints: [entry], bundle: true, format: "esm", loader: { ".css": "empty" }, write: false });
   return import(`data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString("base64")}`);
 }
 const { decode } = await pageModule("protocol.ts");
