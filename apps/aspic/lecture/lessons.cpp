@@ -234,9 +234,9 @@ const std::vector<Staging>& stagings() {
        .part = "Rosenbrock's valley",
        .exercise = "Each step follows the steepest descent across the valley, so the path zig-zags. 200 "
                    "iterations are not enough. Drag the start elsewhere, or choose Newton's method for the same start.",
-       .question = "Why do successive steps turn by nearly right angles?",
-       .answer = "A step ends about where E stops falling along its direction. There the gradient has no component "
-                 "along that direction.",
+       .question = "Why do successive steps turn by a right angle or more?",
+       .answer = "A step ends where E has stopped falling along its direction, or beyond. There the gradient has no "
+                 "component along that direction, or one that points back.",
        .panel = "functions",
        .function = question("rosenbrock", -1, -0.5, {{"method", "gradient_descent"}})},
       {.demonstration = "38-42_gradient_descent",

@@ -1,6 +1,8 @@
 """Lecture pages 38-62: gradient descent and Newton's method, each with and without a line search, on Rosenbrock's valley.
 
-The iterates agree with those of the program to 1e-9 (tested).
+The iterates agree to 1e-9 (tested) with those of the program:
+aspic minimize rosenbrock --method gradient_descent --start -1.2,1 --criterion absolute --tolerance 1e-8 --max-iterations 20000
+Newton's full steps need fewer iterations from here, but E first rises; from other starts and for bodies they diverge.
 """
 import numpy as np
 
@@ -54,4 +56,5 @@ descent = minimize([-1.2, 1], steepest, backtrack)
 solved = minimize([-1.2, 1], newton, backtrack)
 unguarded = minimize([-1.2, 1], newton, lambda x, d: 1.0)
 for name, path in (("gradient descent", descent), ("Newton", solved), ("Newton, full steps", unguarded)):
-    print(f"{name:20} {len(path) - 1:5} iterations, E at most {max(map(E, path)):10.4g}, x = {path[-1]}")
+    if __name__ == "__main__":
+        print(f"{name:20} {len(path) - 1:5} iterations, E at most {max(map(E, path)):10.4g}, x = {path[-1]}")

@@ -1,7 +1,7 @@
 """A solution of week 4: iterations of Newton's method on Rosenbrock's valley from ten starts.
 
 The slowest starts have x < 0: their path follows the bend of the valley around the origin, in steps no longer than the valley
-is straight. Starts beyond x = 1 reach its floor near the minimum and are the fastest.
+is straight. Starts with x > 0 reach its floor on the side of the minimum and need about half as many.
 """
 import numpy as np
 from newton import backtrack, minimize, newton
