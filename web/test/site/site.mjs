@@ -93,11 +93,14 @@ export function runNative(args, program = aspic) {
   assert.ok(status === 0 || status === 3, `${args.join(" ")}: ${stderr}`);
 }
 
+// Quoted cells may contain commas.
+const cells = (row) => [...row.matchAll(/(?:^|,)(?:"((?:[^"]|"")*)"|([^,]*))/g)].map(([, quoted, plain]) => quoted ?? plain);
+
 // Rows of a table of `aspic run`, by their columns; the first is that of the start.
 export function nativeRows(scene, steps, table, program = aspic) {
   const out = temporaryFolder();
   runNative(["run", scene, "--steps", String(steps), "--threads", "1", "--out", out, "--force", "--quiet"], program);
-  const [header, ...rows] = readFileSync(join(out, table), "utf8").trim().split("\n").map((row) => row.split(","));
+  const [header, ...rows] = readFileSync(join(out, table), "utf8").trim().split("\n").map(cells);
   return rows.map((row) => Object.fromEntries(row.map((value, i) => [header[i], value])));
 }
 
