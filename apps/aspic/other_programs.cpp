@@ -33,7 +33,7 @@ std::string beside(const std::string& program) {
 }
 
 const char* remedy_for(const std::string& program) {
-  return program == kMesher ? "build it (ASPIC_MESHER=ON, needs libcgal-dev) or put it on the PATH"
+  return program == kMesher ? "in Aspic's sources `./run mesh` builds it; or put it on the PATH"
                             : "in Aspic's sources `./run fit` builds it; or put the program on the PATH";
 }
 

@@ -46,8 +46,8 @@ constexpr int kOutOfTime = 4;  // exit code of the program
 fs::path mesher() {
   const fs::path here = program_folder();
   return find_program(kProgram, {here, here / ".." / "mesh", here / ".." / "apps" / "mesh", here / "apps" / "mesh"},
-                      "filling a surface with tets needs it; build Aspic with -DASPIC_MESHER=ON (Debian package "
-                      "libcgal-dev), or give a mesh of tets");
+                      "filling a surface with tets needs it; in Aspic's sources `./run mesh` builds it (or "
+                      "-DASPIC_MESHER=ON, Debian package libcgal-dev), or give a mesh of tets");
 }
 
 void add_option(const char* name, double value, std::vector<std::string>& words) {
