@@ -32,9 +32,9 @@ std::string beside(const std::string& program) {
   return is_program(path) ? path.string() : "";
 }
 
-const char* remedy_for(const std::string& program) {
-  return program == kMesher ? "in Aspic's sources `./run mesh` builds it; or put it on the PATH"
-                            : "in Aspic's sources `./run fit` builds it; or put the program on the PATH";
+std::string remedy_for(const std::string& program) {
+  return std::string("in Aspic's sources `./run ") + (program == kMesher ? "mesh" : "fit") +
+         "` builds it; or put it on the PATH";
 }
 
 }  // namespace

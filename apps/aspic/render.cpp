@@ -2,17 +2,16 @@
 #include "viewer/render.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <system_error>
 
 #include "aspic/commands.h"
 #include "aspic/interrupt.h"
+#include "aspic/progress.h"
 #include "aspic/sweep/outcome.h"
 #include "base/error.h"
 #include "base/number_chars.h"
@@ -34,8 +33,18 @@ struct RenderArguments {
   bool wires = true, thickness = false, dark = false, transparent = false, every_frame = false;
 };
 
-constexpr std::chrono::seconds kLineInterval(10);  // between lines of progress in a pipe
-constexpr size_t kMaxBytes = 100'000'000;          // limit of the page, for browsers
+constexpr size_t kMaxBytes = 100'000'000;  // limit of the page, for browsers
+
+class PictureCount : public StatusLine {
+ public:
+  PictureCount() : StatusLine(stdout) {}
+  void show(int drawn, int count) {
+    if (!terminal_ && (count == 1 || seconds() - shown_at_ < kLineInterval)) return;
+    draw(fmt::format("{} of {} pictures", drawn, count));
+    shown_at_ = seconds();
+  }
+  void finish() { erase(); }
+};
 
 viewer::RenderOptions render_options(const RenderArguments& arguments) {
   if (!std::isfinite(arguments.fps) || !std::isfinite(arguments.speed))
@@ -146,23 +155,16 @@ int render(const RenderArguments& arguments) {
   if (!report.note.empty()) fmt::print("note: {} of {} frames are drawn\n", report.frames, report.frames_of_run);
   const std::unique_ptr<Output> output = open_output(arguments, options);
   catch_interrupts();
-  const bool is_terminal = ::isatty(STDOUT_FILENO) != 0;
+  PictureCount progress;
   int drawn = 0;
-  auto shown = std::chrono::steady_clock::now() - kLineInterval;
   const auto take = [&](int index, int count, std::string_view png) {
     output->add(index, png);
     drawn = index + 1;
-    const auto now = std::chrono::steady_clock::now();
-    if (is_terminal) fmt::print("\r{} of {} pictures", drawn, count);
-    if (!is_terminal && count > 1 && now - shown >= kLineInterval) {
-      fmt::print("{} of {} pictures\n", drawn, count);
-      shown = now;
-    }
-    std::fflush(stdout);
+    progress.show(drawn, count);
   };
   const viewer::RenderEnd end =
       viewer::render(report.text, options, take, StopToken([] { return interrupt_signal() != 0; }));
-  if (is_terminal && drawn > 0) fmt::print("\n");
+  progress.finish();
   if (end == viewer::RenderEnd::interrupted) return exit_signal + interrupt_signal();
   output->finish(drawn);
   fmt::print("{}: {} {}\n", arguments.out.string(), drawn, drawn == 1 ? "picture" : "pictures");

@@ -11,7 +11,7 @@ namespace aspic {
 void note_start(const PlacedBody& body, std::vector<std::string>& notes);
 
 // Adds notes about a body crushed by its own weight or stiffer than any material, probably because of a modulus in
-// another unit, and about an energy without a minimum. `gravity` in [m/s^2].
+// another unit, and about an energy without a minimum. `gravity` in [m/s^2]. has_obstacles: the body may rest on one.
 void note_stiffness(const PlacedBody& body, const BodyMaterial& material, const Vec3d& gravity, bool has_obstacles,
                     std::vector<std::string>& notes);
 

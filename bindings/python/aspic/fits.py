@@ -18,8 +18,7 @@ def lame(young, poisson) -> tuple[Any, Any]:
     >>> aspic.lame(young=2.5e5, poisson=0.25)
     (100000.0, 100000.0)
     """
-    inside = (poisson > -1) & (poisson < .5)
-    if not (inside if isinstance(inside, bool) else inside.all()):
+    if isinstance(poisson, (int, float, np.ndarray)) and not np.all((-1 < poisson) & (poisson < .5)):
         raise _aspic.InvalidInput(f"poisson = {poisson}; expected more than -1 and less than 0.5")
     return young / (2 * (1 + poisson)), young * poisson / ((1 + poisson) * (1 - 2 * poisson))
 
