@@ -26,7 +26,8 @@ TriMesh capsule(const Vec3d& a, const Vec3d& b, double radius) {
   constexpr int kAround = 32, kRings = 16;  // kRings: angles from pole to pole, even
   const double length = norm(b - a);
   const Vec3d axis = length > 0 ? (1 / length) * (b - a) : Vec3d{{0, 1, 0}};
-  const auto [u, v] = tangents({.r = axis, .d = 1});
+  const auto frame = tangents({.r = axis, .d = 1});
+  const Vec3d u = frame[0], v = frame[1];
   TriMesh mesh;
   const auto add_ring = [&](const Vec3d& center, double polar) {
     for (int k = 0; k < kAround; ++k) {
