@@ -92,7 +92,11 @@ test("slides fill the screen and are turned by keys", async () => {
     await page.waitForFunction(([text, other]) => (document.querySelector("#left .lesson h2").textContent !== text) === other, [first, changes]);
   }
   await keepPicture(page, "slides");
+  await answered(opened, "a page about a function", isLesson, () => page.evaluate(() => void (location.hash = "#lecture/38/2")));
+  await page.locator("#views").waitFor({ state: "hidden" });
+  await page.waitForFunction(() => document.querySelector(".functions-form ~ .functions-side .chart") && document.querySelector(".surface canvas").clientHeight > innerHeight / 3);
   await page.keyboard.press("Escape");
+  await page.locator("#views").waitFor();
   await page.locator("#toolbar .timeline").waitFor();
   await opened.close();
 });
