@@ -147,6 +147,8 @@ class Usda:
             key = self.take()
             self.take("=")
             attributes[typename + " " + key] = self.samples() if key.endswith(".timeSamples") else self.value()
+            if self.next_is("("):
+                attributes[key + " metadata"] = self.metadata()
         self.take("}")
         return name, (kind, attributes, children)
 
@@ -168,6 +170,10 @@ def check_usd(text):
     name, (kind, attributes, meshes) = usda.prim()
     assert (name, kind, attributes, usda.tokens) == ("simulation", "Xform", {}, [])
     assert list(meshes) == ["skin", "soft_bar"]
+    texture = meshes["skin"][1]
+    assert texture["texCoord2f[] primvars:st"] == [[0, 0], [1, 0], [.5, 1], [.25, 0], [-1, 2], [0, 0]]
+    assert texture["primvars:st metadata"] == {"interpolation": "faceVarying"}
+    assert not any("primvars" in key for key in meshes["soft_bar"][1])
     for kind, attributes, children in meshes.values():
         assert kind == "Mesh" and not children
         assert attributes["int[] faceVertexCounts"] == [3, 3]

@@ -34,7 +34,10 @@ void write_samples(const std::filesystem::path& folder) {
   }
   write_pvd(folder / "run.pvd", frames);
   const auto points = [&](int sample) { return cache.sample(sample); };
-  write_usd(folder / "run.usda", {{"skin", triangles, points}, {"soft bar", triangles, points}}, {0, 0.1, 0.2}, 10);
+  const std::vector<TriangleUv> uv = {{{{0, 0}, {1, 0}, {0.5F, 1}}}, {{{0.25F, 0}, {-1, 2}, {0, 0}}}};
+  UsdMesh skin{"skin", triangles, points};
+  skin.uv = uv;
+  write_usd(folder / "run.usda", {skin, {"soft bar", triangles, points}}, {0, 0.1, 0.2}, 10);
 
   // Long enough for several compressed blocks.
   std::vector<double> many;

@@ -60,7 +60,10 @@ class Arrays {
               ",\"byteLength\":" + std::to_string(size) + "}";
     accessors_ += comma + "{\"bufferView\":" + std::to_string(count_) + ",\"componentType\":" + std::to_string(type) +
                   ",\"count\":" + std::to_string(count / components) + ",\"type\":\"" +
-                  (components == 3 ? "VEC3" : "SCALAR") + "\"" + range + "}";
+                  (components == 3   ? "VEC3"
+                   : components == 2 ? "VEC2"
+                                     : "SCALAR") +
+                  "\"" + range + "}";
     bytes_.append(static_cast<const char*>(data), size);
     return count_++;
   }
@@ -118,8 +121,9 @@ class SceneText {
   void add(const GltfMesh& mesh) {
     const std::string comma = count_ == 0 ? "" : ",", name = json_text(mesh.name);
     const std::string position = number(arrays_.add(mesh.frames[0], 3)), indices = number(arrays_.add(corners(mesh)));
+    const std::string texture = mesh.uv.empty() ? "" : ",\"TEXCOORD_0\":" + number(arrays_.add(mesh.uv, 2));
     nodes_ += comma + "{\"mesh\":" + number(count_) + ",\"name\":" + name + "}";
-    meshes_ += comma + "{\"name\":" + name + ",\"primitives\":[{\"attributes\":{\"POSITION\":" + position +
+    meshes_ += comma + "{\"name\":" + name + ",\"primitives\":[{\"attributes\":{\"POSITION\":" + position + texture +
                "},\"material\":0,\"indices\":" + indices + (mesh.segments.empty() ? "" : ",\"mode\":1") +
                targets(mesh) + "}]}";
     if (mesh.frames.size() > 1) moving_.push_back(count_);

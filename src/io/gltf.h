@@ -16,6 +16,7 @@ struct GltfMesh {
   std::span<const Triangle> triangles;
   std::vector<std::vector<float>> frames = {};  // one, or one per time; 3 per vertex [m]
   std::span<const Segment> segments = {};       // not empty: lines instead of triangles
+  std::vector<float> uv = {};                   // texture coordinates, 2 per vertex with v downward; may be empty
 };
 
 struct GltfScene {

@@ -201,7 +201,8 @@ GltfFile::View GltfFile::view(uint64_t index) const {
 }
 
 std::vector<double> GltfFile::values(uint64_t index, const char* shape, bool are_indices) {
-  static const std::map<std::string_view, size_t> kComponents = {{"SCALAR", 1}, {"VEC3", 3}, {"VEC4", 4}, {"MAT4", 16}};
+  static const std::map<std::string_view, size_t> kComponents = {
+      {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT4", 16}};
   const std::string owner = name("accessors", index);
   const Json& accessor = item("accessors", index);
   if (accessor.contains("sparse") || !accessor.contains("bufferView"))

@@ -48,7 +48,7 @@ class GltfFile {
 
   std::string self_contained() const;  // the file as JSON with all buffers inside
 
-  // Returns the numbers of an accessor, which are finite. `shape`: SCALAR, VEC3, VEC4 or MAT4.
+  // Returns the numbers of an accessor, which are finite. `shape`: SCALAR, VEC2, VEC3, VEC4 or MAT4.
   std::vector<double> reals(uint64_t accessor, const char* shape) { return values(accessor, shape, false); }
   std::vector<double> indices(uint64_t accessor, const char* shape) { return values(accessor, shape, true); }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -51,7 +52,8 @@ bool is_affine(const double* m) { return m[3] == 0 && m[7] == 0 && m[11] == 0 &&
 // The meshes of the default scene. A vertex is the weighted mean of its images under maps: of its node, or of joints.
 class GltfSurface {
  public:
-  explicit GltfSurface(GltfFile& file) : file_(file), transforms_(file.list("nodes").size()) {
+  explicit GltfSurface(GltfFile& file, bool reads_texture = false)
+      : file_(file), reads_texture_(reads_texture), transforms_(file.list("nodes").size()) {
     slot_of_.resize(transforms_.size(), kNone);
     std::vector<std::pair<uint64_t, size_t>> pending;
     add_nodes(file.list(file.scene(), "nodes"), kNone, pending);
@@ -67,6 +69,7 @@ class GltfSurface {
 
   const std::vector<GltfTransform>& transforms() const { return transforms_; }  // at rest, of all nodes
   const std::vector<Triangle>& triangles() const { return triangles_; }
+  const std::vector<TriangleCorners>& texture() const { return texture_; }  // of the triangles that have any
   size_t vertex_count() const { return points_.size(); }
   size_t map_count() const { return nodes_.size() + maps_.size(); }
   size_t influence_count() const { return influences_.size(); }
@@ -164,7 +167,12 @@ class GltfSurface {
         first_.push_back(influences_.size());
       }
       const Map& map = maps_[has_skin && !influences.empty() ? influences[0][0].map : maps.first];
-      add_triangles(primitive, vertices, determinant((rest[map.slot] * map.before).linear) < 0);
+      std::vector<size_t> corners = corners_of(primitive, vertices.size());
+      if (determinant((rest[map.slot] * map.before).linear) < 0)  // mirrored
+        for (size_t i = 2; i < corners.size(); i += 3) std::swap(corners[i - 1], corners[i]);
+      for (size_t i = 0; i < corners.size(); i += 3)
+        triangles_.push_back({vertices[corners[i]], vertices[corners[i + 1]], vertices[corners[i + 2]]});
+      if (reads_texture_ && attributes->contains("TEXCOORD_0")) add_texture(*attributes, owner, corners);
     }
   }
 
@@ -222,25 +230,36 @@ class GltfSurface {
     }
   }
 
-  void add_triangles(const Json& primitive, const std::vector<int>& vertices, bool is_mirrored) {
-    std::vector<int> corners = vertices;
+  // Returns three vertices of the primitive per triangle.
+  std::vector<size_t> corners_of(const Json& primitive, size_t vertices) const {
+    std::vector<size_t> corners(vertices);
+    std::iota(corners.begin(), corners.end(), size_t{0});
     if (primitive.contains("indices")) {
       const uint64_t accessor = file_.integer(primitive, "indices", "a primitive");
       corners.clear();
       for (const double corner : file_.indices(accessor, "SCALAR")) {
-        if (corner >= static_cast<double>(vertices.size()))
+        if (corner >= static_cast<double>(vertices))
           file_.fail(GltfFile::name("accessors", accessor) + " names vertex " +
-                     std::to_string(static_cast<uint64_t>(corner)) + " of " + std::to_string(vertices.size()));
-        corners.push_back(vertices[static_cast<size_t>(corner)]);
+                     std::to_string(static_cast<uint64_t>(corner)) + " of " + std::to_string(vertices));
+        corners.push_back(static_cast<size_t>(corner));
       }
     }
-    if (is_mirrored)
-      for (size_t i = 2; i < corners.size(); i += 3) std::swap(corners[i - 1], corners[i]);
     if (corners.size() % 3 != 0) file_.fail("the corners of a mesh are no multiple of 3");
-    for (size_t i = 0; i < corners.size(); i += 3) triangles_.push_back({corners[i], corners[i + 1], corners[i + 2]});
+    return corners;
+  }
+
+  // v points down in glTF.
+  void add_texture(const Json& attributes, const std::string& owner, const std::vector<size_t>& corners) {
+    const std::vector<double> uv = file_.reals(file_.integer(attributes, "TEXCOORD_0", owner), "VEC2");
+    for (size_t i = 0; i < corners.size(); ++i) {
+      if (2 * corners[i] >= uv.size()) file_.fail("TEXCOORD_0 of " + owner + " does not have a row per vertex");
+      if (i % 3 == 0) texture_.emplace_back();
+      texture_.back()[i % 3] = {{uv[2 * corners[i]], 1 - uv[2 * corners[i] + 1], 0}};
+    }
   }
 
   GltfFile& file_;
+  bool reads_texture_;
   std::vector<GltfTransform> transforms_;
   std::vector<size_t> slot_of_;  // of each node, in nodes_
   std::vector<Node> nodes_;      // of the scene
@@ -250,6 +269,7 @@ class GltfSurface {
   std::vector<size_t> first_ = {0};  // of each vertex, in influences_
   std::vector<Influence> influences_;
   std::vector<Triangle> triangles_;
+  std::vector<TriangleCorners> texture_;
 };
 
 }  // namespace
@@ -270,6 +290,15 @@ MeshContent parse_gltf(const std::string& file, std::string_view contents, const
   GltfFile gltf(file, contents, read_beside);
   const GltfSurface surface(gltf);
   return {surface.vertices(surface.transforms()), {}, {}, surface.triangles()};
+}
+
+std::vector<TriangleCorners> parse_gltf_texture(const std::string& file, std::string_view contents,
+                                                const ReadBeside& read_beside) {
+  GltfFile gltf(file, contents, read_beside);
+  const GltfSurface surface(gltf, true);
+  if (!surface.texture().empty() && surface.texture().size() != surface.triangles().size())
+    gltf.fail("some triangles have no TEXCOORD_0", "unwrap all meshes");
+  return surface.texture();
 }
 
 GltfMotion parse_gltf_motion(const std::string& file, std::string_view contents, const ReadBeside& read_beside,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/mesh_content.h"
+#include "mesh/triangle_shape.h"
 
 namespace aspic {
 
@@ -21,6 +22,11 @@ std::string read_self_contained(const std::filesystem::path& path);
 // Vertices of a node at the same position become one, since glTF repeats them along edges of normals and textures.
 // Morph targets and animations are ignored. Throws InvalidInput.
 MeshContent parse_gltf(const std::string& file, std::string_view contents, const ReadBeside& read_beside);
+
+// Returns the texture coordinates (u, v, 0) of the triangles of parse_gltf(), with v upward; nothing if no mesh has
+// TEXCOORD_0. Throws InvalidInput if only some have it.
+std::vector<TriangleCorners> parse_gltf_texture(const std::string& file, std::string_view contents,
+                                                const ReadBeside& read_beside);
 
 struct GltfSampling {
   double rate;                 // samples per second

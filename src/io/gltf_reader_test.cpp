@@ -38,6 +38,21 @@ TEST_F(GltfReading, PlacesMeshesAndMergesVertices) {
   }
 }
 
+TEST_F(GltfReading, TextureIsThatOfTheCorners) {
+  const std::vector<Triangle> triangles = {{0, 1, 2}, {0, 3, 4}};  // vertices 2 and 3 are at the same place
+  const GltfMesh mesh{.name = "a",
+                      .triangles = triangles,
+                      .frames = {{0, 0, 0, 1, 0, 0, 1, 1, 0, 1, 1, 0, 0, 1, 0}},
+                      .uv = {0, 0, 1, 0, 0.5F, 0.25F, -1, 3, 2, 1}};
+  EXPECT_EQ(read("a.glb", glb({.meshes = {mesh}, .times = {0}})).triangles[1], (Triangle{0, 2, 3}));
+  std::vector<std::string> notes;
+  EXPECT_THAT(read_texture(folder / "a.glb", 2, notes),
+              ElementsAre(TriangleUv{{{0, 1}, {1, 1}, {0.5F, 0.75F}}}, TriangleUv{{{0, 1}, {-1, -2}, {2, 0}}}));
+  read("b.glb", glb({.meshes = {mesh, {.name = "b", .triangles = triangles, .frames = mesh.frames}}, .times = {0}}));
+  EXPECT_TRUE(read_texture(folder / "b.glb", 4, notes).empty());
+  EXPECT_THAT(notes, ElementsAre(HasSubstr("some triangles have no TEXCOORD_0")));
+}
+
 TEST_F(GltfReading, MirroredNodesKeepOutsideOut) {
   std::string text = gltf_square(false);
   const std::string old = R"("translation":[0,0,2])";

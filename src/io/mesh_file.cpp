@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <limits>
 #include <system_error>
 
 #include "base/check.h"
@@ -171,6 +172,25 @@ void check_vertices(const fs::path& path, const std::vector<Vec3d>& vertices) {
                            " has a coordinate that is not finite; find out where it comes from");
 }
 
+std::vector<TriangleCorners> parse_texture(const fs::path& path) {
+  const std::string extension = lower(path.extension().string());
+  if (extension == ".obj") return parse_obj_texture(path.string(), read_file(path));
+  if (extension != ".glb" && extension != ".gltf") return {};
+  return parse_gltf_texture(path.string(), read_file(path), files_beside(path));
+}
+
+// Throws InvalidInput beyond single precision.
+TriangleUv rounded(const TriangleCorners& corners, const std::string& path) {
+  TriangleUv uv;
+  for (size_t c = 0; c < 3; ++c)
+    for (int r = 0; r < 2; ++r) {
+      if (std::abs(corners[c][r]) > std::numeric_limits<float>::max())
+        throw InvalidInput(path + ": a texture coordinate exceeds single precision; unwrap the mesh again");
+      uv[c][static_cast<size_t>(r)] = static_cast<float>(corners[c][r]);
+    }
+  return uv;
+}
+
 template <class Elements>
 bool are_indices_valid(const Elements& elements, int vertices) {
   for (const auto& element : elements)
@@ -238,6 +258,18 @@ std::vector<std::array<Vec3d, 3>> read_uv(const std::string& path) {
   return parse_obj_uv(path, read_file(path));
 }
 
+std::vector<TriangleUv> read_texture(const std::string& path, int triangles, std::vector<std::string>& notes) {
+  try {
+    std::vector<TriangleUv> uv;
+    for (const TriangleCorners& corners : parse_texture(path)) uv.push_back(rounded(corners, path));
+    if (!uv.empty() && std::ssize(uv) != triangles) throw InvalidInput(path + ": changed while it was read; run again");
+    return uv;
+  } catch (const InvalidInput& e) {
+    notes.push_back(e.what() + std::string("; the results have no texture coordinates"));
+    return {};
+  }
+}
+
 bool has_lines_only(const std::string& path) {
   const MeshContent content = format_of(path).read(path);
   return content.tets.empty() && content.triangles.empty() && !content.segments.empty();
@@ -281,6 +313,12 @@ void write_mesh(const std::string& path, const TriMesh& mesh, FileEncoding encod
   ASPIC_CHECK(are_indices_valid(mesh.triangles, mesh.vertex_count()));
   check_vertices(path, mesh.vertices);
   format.write_triangles(path, mesh, encoding);
+}
+
+void write_textured_mesh(const std::string& path, const TriMesh& mesh, std::span<const TriangleUv> uv) {
+  ASPIC_CHECK(are_indices_valid(mesh.triangles, mesh.vertex_count()) && uv.size() == mesh.triangles.size());
+  check_vertices(path, mesh.vertices);
+  write_file(path, obj_text(mesh, uv));
 }
 
 }  // namespace aspic

@@ -1,11 +1,13 @@
 // Reads and writes mesh files; the extension selects the format. Readers repair nothing.
 #pragma once
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "mesh/mesh_groups.h"
 #include "mesh/tet_mesh.h"
+#include "mesh/triangle_uv.h"
 
 namespace aspic {
 
@@ -36,6 +38,11 @@ GltfMotion read_gltf_motion(const std::string& path, const GltfSampling& samplin
 // read_mesh(), and if a triangle has none, or no area in them.
 std::vector<std::array<Vec3d, 3>> read_uv(const std::string& path);
 
+// Reads the texture coordinates of the triangles of read_tri_mesh(), whose number is `triangles`: `vt` of OBJ,
+// TEXCOORD_0 of glTF. Returns nothing if the file has none, or, with the reason in `notes`, if a corner has none or
+// invalid ones.
+std::vector<TriangleUv> read_texture(const std::string& path, int triangles, std::vector<std::string>& notes);
+
 // Reads the lines of an OBJ, VTU or VTK file as the vertices and rods of a mesh without radius, in the order of the
 // file. Throws InvalidInput like read_mesh(), and if the file has no lines.
 TetMesh read_line_mesh(const std::string& path);
@@ -50,5 +57,7 @@ enum class FileEncoding { ascii, binary };  // formats of text only reject binar
 // written, if a coordinate is not finite, or if the format does not hold such elements or this encoding.
 void write_mesh(const std::string& path, const TetMesh& mesh, FileEncoding encoding = FileEncoding::ascii);
 void write_mesh(const std::string& path, const TriMesh& mesh, FileEncoding encoding = FileEncoding::ascii);
+// Writes OBJ with texture coordinates of each triangle. Throws InvalidInput like write_mesh().
+void write_textured_mesh(const std::string& path, const TriMesh& mesh, std::span<const TriangleUv> uv);
 
 }  // namespace aspic

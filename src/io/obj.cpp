@@ -7,6 +7,7 @@
 #include "base/formatted.h"
 #include "io/number_text.h"
 #include "io/text_scanner.h"
+#include "io/vertex_merger.h"
 
 namespace aspic {
 namespace {
@@ -46,8 +47,12 @@ class ObjReader {
     return std::move(content_);
   }
 
+  bool has_uv() const {
+    return std::any_of(uv_corners_.begin(), uv_corners_.end(), [](const Triangle& t) { return t != kNoUv; });
+  }
+
   // Requires reads_uv and read().
-  std::vector<TriangleCorners> uv() {
+  std::vector<TriangleCorners> uv(bool needs_area) {
     std::vector<TriangleCorners> uv;
     for (size_t t = 0; t < uv_corners_.size(); ++t) {
       text_.blame(positions_[t]);
@@ -58,7 +63,7 @@ class ObjReader {
                                       std::to_string(uv_.size()) + "; correct it or get a complete copy");
       const auto& [a, b, c] = uv_corners_[t];
       uv.push_back({uv_[a], uv_[b], uv_[c]});
-      if (is_degenerate(uv.back()))
+      if (needs_area && is_degenerate(uv.back()))
         text_.fail("a triangle has no area in its texture coordinates " + uv_text(uv_[a]) + ", " + uv_text(uv_[b]) +
                    ", " + uv_text(uv_[c]) + "; unwrap the mesh again");
     }
@@ -66,6 +71,8 @@ class ObjReader {
   }
 
  private:
+  static constexpr Triangle kNoUv = {-1, -1, -1};
+
   static std::string uv_text(const Vec3d& p) { return formatted("(%g, %g)", p[0], p[1]); }
 
   void read_texture_vertex() {
@@ -127,7 +134,7 @@ class ObjReader {
     const size_t first = word.find('/');
     if (first == std::string_view::npos) return -1;
     const auto given = parse_integer(word.substr(first + 1, word.find('/', first + 1) - first - 1));
-    if (!given || *given > INT_MAX) return -1;
+    if (!given || *given == 0 || *given > INT_MAX) return -1;
     return static_cast<int>(std::max<int64_t>(*given > 0 ? *given - 1 : static_cast<int64_t>(uv_.size()) + *given, -1));
   }
 
@@ -171,7 +178,13 @@ MeshContent parse_obj(const std::string& file, std::string_view contents) { retu
 std::vector<TriangleCorners> parse_obj_uv(const std::string& file, std::string_view contents) {
   ObjReader reader(file, contents, true);
   reader.read();
-  return reader.uv();
+  return reader.uv(true);
+}
+
+std::vector<TriangleCorners> parse_obj_texture(const std::string& file, std::string_view contents) {
+  ObjReader reader(file, contents, true);
+  reader.read();
+  return reader.has_uv() ? reader.uv(false) : std::vector<TriangleCorners>();
 }
 
 std::string obj_text(const TriMesh& mesh) {
@@ -187,6 +200,29 @@ std::string obj_text(const TriMesh& mesh) {
     text += '\n';
   }
   return text;
+}
+
+std::string obj_text(const TriMesh& mesh, std::span<const TriangleUv> uv) {
+  std::string text = obj_text(TriMesh{mesh.vertices, {}}), faces;
+  VertexMerger merger;
+  std::vector<Vec3d> distinct;
+  for (size_t t = 0; t < uv.size(); ++t) {
+    faces += 'f';
+    for (size_t c = 0; c < 3; ++c) {
+      append_indices(faces, std::array{mesh.triangles[t][c]}, 1);
+      faces += '/';
+      append_number(faces, merger.vertex({{uv[t][c][0], uv[t][c][1], 0}}, distinct) + 1);
+    }
+    faces += '\n';
+  }
+  for (const Vec3d& point : distinct) {
+    text += "vt ";
+    append_number(text, static_cast<float>(point[0]));
+    text += ' ';
+    append_number(text, static_cast<float>(point[1]));
+    text += '\n';
+  }
+  return text + faces;
 }
 
 std::string obj_text_of_lines(const TetMesh& mesh) {

@@ -99,6 +99,40 @@ TEST(ObjUv, RejectsFacesWithoutArea) {
   EXPECT_THAT(refusal("vt nan 0\nf 1/1 2/2 3/3\n"), HasSubstr("a.obj:7: "));
 }
 
+TEST(ObjTexture, IsReadBackAsWritten) {
+  const TestFolder folder;
+  const std::string file = folder.write("a.obj",
+                                        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt .1 0 0\nvt -2 1e9\nf 1/1 2/2 "
+                                        "3/3 4/2\n");
+  std::vector<std::string> notes;
+  const std::vector<TriangleUv> uv = read_texture(file, 2, notes);
+  EXPECT_THAT(uv,
+              ElementsAre(TriangleUv{{{0, 0}, {0.1F, 0}, {-2, 1e9F}}}, TriangleUv{{{0, 0}, {-2, 1e9F}, {0.1F, 0}}}));
+  write_textured_mesh(folder / "b.obj", read_tri_mesh(file), uv);
+  EXPECT_THAT(read_file(folder / "b.obj"), HasSubstr("vt 0 0\nvt 0.1 0\nvt -2 1e+09\nf 1/1 2/2 3/3\nf 1/1 3/3 4/2\n"));
+  EXPECT_EQ(read_texture(folder / "b.obj", 2, notes), uv);
+  EXPECT_THAT(notes, ElementsAre());
+}
+
+TEST(ObjTexture, DefectsAreNoted) {
+  const TestFolder folder;
+  const auto note = [&](const std::string& faces) {
+    std::vector<std::string> notes;
+    const auto file = folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 1e39 0\n" + faces);
+    EXPECT_TRUE(read_texture(file, 1, notes).empty());
+    return notes.empty() ? "" : notes.front();
+  };
+  EXPECT_EQ(note("f 1 2 3\n"), "");
+  EXPECT_EQ(note("f 1//1 2//2 3//3\n"), "");
+  EXPECT_THAT(note("f 1/1 2 3/1\n"), HasSubstr("a.obj:7: a corner has no texture coordinates"));
+  EXPECT_THAT(note("f 1/1 2/0 3/1\nvt 0 0\n"), HasSubstr("a.obj:7: a corner has no texture coordinates"));
+  EXPECT_THAT(note("f 1/1 2/-9 3/1\n"), HasSubstr("a.obj:7: a corner has no texture coordinates"));
+  EXPECT_THAT(note("f 1/1 2/4 3/1\n"), HasSubstr("a.obj:7: a corner names texture coordinates 4 of 3"));
+  EXPECT_THAT(note("f 1/1 2/2 3/3\n"), HasSubstr("exceeds single precision"));
+  EXPECT_THAT(note("vt nan 0\nf 1/1 2/2 3/4\n"), HasSubstr("a.obj:7: a texture coordinate is 'nan'"));
+  EXPECT_THAT(note("f 1/1 2/2 3/1\nf 1/1 2/2 3/1\n"), HasSubstr("changed"));
+}
+
 TEST(ObjLines, AreReadBackAsWritten) {
   const TestFolder folder;
   TetMesh rod{.rest = {{{0, 0, 0}}, {{0.1, 0, 1e-17}}, {{1, 1, 0}}}, .tets = {}, .region = {}};

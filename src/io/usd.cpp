@@ -103,6 +103,20 @@ std::vector<float> points_of(const UsdMesh& mesh, int sample) {
   return chosen;
 }
 
+// Returns the attribute with the texture coordinates of all corners; empty without any.
+std::string texture(std::span<const TriangleUv> uv) {
+  std::string text;
+  for (const TriangleUv& triangle : uv)
+    for (const auto& [u, v] : triangle) {
+      text += text.empty() ? "        texCoord2f[] primvars:st = [(" : ", (";
+      append_number(text, u);
+      text += ", ";
+      append_number(text, v);
+      text += ')';
+    }
+  return text.empty() ? "" : text + "] (\n            interpolation = \"faceVarying\"\n        )\n";
+}
+
 std::string topology(const UsdMesh& mesh) {
   std::string counts, indices;
   if (!mesh.segments.empty()) {
@@ -124,7 +138,7 @@ std::string topology(const UsdMesh& mesh) {
   }
   return "        int[] faceVertexCounts = [" + counts + "]\n        int[] faceVertexIndices = [" + indices +
          "]\n        uniform token subdivisionScheme = \"none\"\n" +
-         (mesh.is_two_sided ? "        uniform bool doubleSided = 1\n" : "");
+         (mesh.is_two_sided ? "        uniform bool doubleSided = 1\n" : "") + texture(mesh.uv);
 }
 
 template <class ValueText>

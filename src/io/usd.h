@@ -9,6 +9,7 @@
 
 #include "io/camera.h"
 #include "mesh/tet_mesh.h"
+#include "mesh/triangle_uv.h"
 
 namespace aspic {
 
@@ -20,6 +21,7 @@ struct UsdMesh {
   bool is_two_sided = false;
   std::span<const Segment> segments = {};  // of rods, chain by chain; not empty: BasisCurves instead of a Mesh
   double radius = 0;                       // of rods [m]
+  std::span<const TriangleUv> uv = {};     // of each triangle; may be empty
 };
 
 enum class UpAxis { y, z };

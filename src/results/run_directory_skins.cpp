@@ -26,11 +26,12 @@ std::vector<float> flat(const std::vector<Vec3d>& points) {
   return numbers;
 }
 
-void write_skin(const std::filesystem::path& path, const TriMesh& mesh, const std::vector<Segment>& segments) {
-  if (segments.empty())
+void write_skin(const std::filesystem::path& path, const TriMesh& mesh, const Skin& skin) {
+  if (!skin.uv.empty() && path.extension() == ".obj") return write_textured_mesh(path, mesh, skin.uv);
+  if (skin.segments.empty())
     return write_mesh(path, mesh, path.extension() == ".ply" ? FileEncoding::binary : FileEncoding::ascii);
   TetMesh lines{.rest = mesh.vertices, .tets = {}, .region = {}};
-  lines.rods = segments;
+  lines.rods = skin.segments;
   write_line_mesh(path, lines);
 }
 
@@ -49,7 +50,7 @@ RunSkins RunSkins::create(const RunLayout& layout, const Scene& scene) {
   for (size_t i = 0; i < skins.skins_.size(); ++i) {
     if (!skins.output_.pc2 && !skins.output_.usd) break;
     const TriMesh& rest = skins.skins_[i].rest;
-    write_skin(layout.skin_rest(skins.names_[i]), rest, skins.skins_[i].segments);
+    write_skin(layout.skin_rest(skins.names_[i]), rest, skins.skins_[i]);
     skins.caches_.push_back(Pc2File::create(layout.skin_cache(skins.names_[i]), rest.vertex_count()));
   }
   return skins;
@@ -59,7 +60,7 @@ RunSkins RunSkins::resume(const RunLayout& layout, const Scene& scene, int frame
   RunSkins skins(layout, scene);
   for (size_t i = 0; i < skins.skins_.size(); ++i) {
     if (!skins.output_.pc2 && !skins.output_.usd) break;
-    write_skin(layout.skin_rest(skins.names_[i]), skins.skins_[i].rest, skins.skins_[i].segments);
+    write_skin(layout.skin_rest(skins.names_[i]), skins.skins_[i].rest, skins.skins_[i]);
     skins.caches_.push_back(
         Pc2File::resume(layout.skin_cache(skins.names_[i]), skins.skins_[i].rest.vertex_count(), frames));
   }
@@ -73,8 +74,8 @@ void RunSkins::add_frame(int frame, std::span<const double> q) {
     if (!caches_.empty()) caches_[i].append(x_);
     if (!output_.obj && !output_.ply) continue;
     const TriMesh mesh = moved(skins_[i].rest, x_);
-    if (output_.obj) write_skin(layout_.skin_frame(names_[i], frame, ".obj"), mesh, skins_[i].segments);
-    if (output_.ply) write_skin(layout_.skin_frame(names_[i], frame, ".ply"), mesh, skins_[i].segments);
+    if (output_.obj) write_skin(layout_.skin_frame(names_[i], frame, ".obj"), mesh, skins_[i]);
+    if (output_.ply) write_skin(layout_.skin_frame(names_[i], frame, ".ply"), mesh, skins_[i]);
   }
 }
 
@@ -111,7 +112,8 @@ void RunSkins::write_usd(const std::vector<double>& frame_times, const RunObstac
                       .points = [this, i](int frame) { return caches_[i].sample(frame); },
                       .is_two_sided = skins_[i].is_sheet,
                       .segments = skins_[i].segments,
-                      .radius = skins_[i].radius});
+                      .radius = skins_[i].radius,
+                      .uv = skins_[i].uv});
   }
   for (size_t i = 0; i < obstacles.at_start().size(); ++i) {
     const ObstacleSurface& start = obstacles.at_start()[i];

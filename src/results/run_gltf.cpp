@@ -9,6 +9,7 @@
 #include "io/gltf.h"
 #include "io/pc2.h"
 #include "io/usd.h"
+#include "io/vertex_merger.h"
 #include "results/run_directory_obstacles.h"
 
 namespace aspic {
@@ -22,6 +23,39 @@ std::vector<float> numbers_of(const std::vector<Vec3d>& points) {
   for (const Vec3d& x : points) numbers.insert(numbers.end(), x.a, x.a + 3);
   return numbers;
 }
+
+// A skin whose vertices are split where texture coordinates differ.
+struct SplitSkin {
+  std::vector<Vec3d> vertices;  // (number in the skin, u, v)
+  std::vector<Triangle> triangles;
+
+  explicit SplitSkin(const Skin& skin) : triangles(skin.rest.triangles) {
+    if (skin.uv.empty())
+      for (int v = 0; v < skin.rest.vertex_count(); ++v) vertices.push_back({{1.0 * v, 0, 0}});
+    VertexMerger merger;
+    for (size_t t = 0; t < skin.uv.size(); ++t)
+      for (size_t c = 0; c < 3; ++c) {
+        const auto& [u, v] = skin.uv[t][c];
+        triangles[t][c] = merger.vertex({{1.0 * triangles[t][c], u, v}}, vertices);
+      }
+  }
+  // Returns the points from those of the skin.
+  std::vector<float> points(const std::vector<float>& x) const {
+    std::vector<float> own;
+    for (const Vec3d& vertex : vertices) {
+      const auto from = x.begin() + 3 * static_cast<std::ptrdiff_t>(vertex[0]);
+      own.insert(own.end(), from, from + 3);
+    }
+    return own;
+  }
+  // Returns the texture coordinates with v downward, as in glTF.
+  std::vector<float> uv() const {
+    std::vector<float> own;
+    for (const Vec3d& vertex : vertices)
+      own.insert(own.end(), {static_cast<float>(vertex[1]), static_cast<float>(1 - vertex[2])});
+    return own;
+  }
+};
 
 // The frames of a skin, from its point cache.
 class SkinFrames {
@@ -47,9 +81,9 @@ class SkinFrames {
   Pc2Reader cache_;
 };
 
-std::vector<int> chosen_frames(int frames, const Scene& scene) {
+std::vector<int> chosen_frames(int frames, const std::vector<SplitSkin>& skins) {
   double bytes = 0;  // per frame
-  for (const Skin& skin : scene.skins) bytes += 12.0 * skin.rest.vertex_count();
+  for (const SplitSkin& skin : skins) bytes += 12.0 * static_cast<double>(skin.vertices.size());
   const int most = std::max(2, static_cast<int>(std::min<double>(kMaxFrames, kLargestFile / std::max(bytes, 1.0))));
   const int stride = std::max(1, (frames - 1 + most - 2) / (most - 1));
   std::vector<int> chosen;
@@ -72,7 +106,8 @@ RunGltf run_glb(const RunLayout& layout, const Scene& scene) {
   std::error_code error;
   if (frames == 0 || scene.skins.empty() || !std::filesystem::exists(layout.skins(), error))
     throw InvalidInput(layout.root().string() + ": holds no point caches; run it again with output.pc2 = true");
-  const std::vector<int> chosen = chosen_frames(frames, scene);
+  std::vector<SplitSkin> split(scene.skins.begin(), scene.skins.end());
+  const std::vector<int> chosen = chosen_frames(frames, split);
   GltfScene gltf;
   for (const int k : chosen) gltf.times.push_back(times[k] - times[0]);
 
@@ -83,8 +118,9 @@ RunGltf run_glb(const RunLayout& layout, const Scene& scene) {
     const Skin& skin = scene.skins[i];
     SkinFrames skin_frames(layout, names[i], skin, frames);
     GltfMesh& mesh = gltf.meshes.emplace_back(
-        GltfMesh{.name = skin.body, .triangles = skin.rest.triangles, .segments = skin.segments});
-    for (const int k : chosen) mesh.frames.push_back(skin_frames.at(k));
+        GltfMesh{.name = skin.body, .triangles = split[i].triangles, .segments = skin.segments});
+    if (!skin.uv.empty()) mesh.uv = split[i].uv();
+    for (const int k : chosen) mesh.frames.push_back(split[i].points(skin_frames.at(k)));
   }
   RunObstacles obstacles(layout, scene);
   const std::vector<double>* obstacle_times = checkpoint.find("obstacle_times");

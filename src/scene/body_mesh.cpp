@@ -344,6 +344,7 @@ BodyMesh with_its_skin(Value& body, MeshLoader& loader, LoadedMesh mesh) {
   const std::optional<Value> chosen = skin ? std::optional(*skin) : std::nullopt;
   body.table().set("skin", {loader.files.keep(path, name + ".skin"), {}});
   BodyMesh result = with_skin(std::move(mesh.tets), std::move(surface));
+  result.uv = read_texture(path, result.skin.triangle_count(), loader.notes);
   if (!chosen) return result;
   refuse_foreign_skin(result, *chosen);
   note_outside(result, name, loader.notes);

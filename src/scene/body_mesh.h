@@ -60,6 +60,7 @@ struct BodyMesh {
   TriMesh skin;         // placed alike
   Embedding embedding;  // of the skin into the tets
   MeshGroups groups = {};
+  std::vector<TriangleUv> uv = {};  // of the skin; may be empty
 };
 
 // Resolves mesh, shape and skin of a body, and names the files of the results in its table. `loaded`: the mesh, if

@@ -194,12 +194,15 @@ BodyMesh make_sheet_mesh(Value& body, MeshLoader& loader) {
   if (shape && pattern)
     throw error_at(pattern->place, "pattern: a shape has no texture coordinates (give an OBJ file as `mesh`)");
   std::vector<TriangleCorners> uv;
+  std::vector<TriangleUv> texture;
   bool is_solid = shape && !shape->find("rectangle") && !shape->find("disc") && !shape->find("tube");
   const auto read = [&](const std::string& path) {
     if (pattern) uv = read_uv(path);
     auto mesh = read_mesh(path);
     is_solid = std::holds_alternative<TetMesh>(mesh);
-    return is_solid ? boundary_surface(std::get<TetMesh>(mesh)).surface : std::get<TriMesh>(std::move(mesh));
+    if (is_solid) return boundary_surface(std::get<TetMesh>(mesh)).surface;
+    texture = read_texture(path, std::get<TriMesh>(mesh).triangle_count(), loader.notes);
+    return std::get<TriMesh>(std::move(mesh));
   };
   TriMesh surface = shape ? shape_surface(*shape, loader) : thin_mesh_from_file(body, loader, read);
   check(surface, body, place);
@@ -233,6 +236,7 @@ BodyMesh make_sheet_mesh(Value& body, MeshLoader& loader) {
   BodyMesh result;
   for (int v = 0; v < surface.vertex_count(); ++v) result.embedding.carriers.push_back(Carrier::of_vertex(v));
   result.skin = std::move(surface);
+  result.uv = std::move(texture);
   result.tets = std::move(mesh);
   return result;
 }

@@ -9,6 +9,7 @@
 
 #include "dynamics/simulation.h"
 #include "mesh/embed.h"
+#include "mesh/triangle_uv.h"
 
 namespace aspic {
 
@@ -30,6 +31,7 @@ struct Skin {
   bool is_sheet = false;
   std::vector<Segment> segments = {};  // of a rod, chain by chain
   double radius = 0;                   // of a rod [m]
+  std::vector<TriangleUv> uv = {};     // of each triangle of `rest`; empty: the file has none
 };
 
 struct Table;  // see scene/value.h

@@ -156,7 +156,7 @@ class SceneBuilder {
         for (int n = 0; n < carrier.count; ++n) carrier.vertex[n] = body.model_vertex(carrier.vertex[n]);
       const double radius = body.mesh.radius.empty() ? 0 : body.mesh.radius.front();
       skins_.push_back({std::move(mesh.skin), std::move(mesh.embedding), body.name(), !body.mesh.sheet.empty(),
-                        body.mesh.rods, radius});
+                        body.mesh.rods, radius, std::move(mesh.uv)});
       bodies_.push_back(std::move(body));
     }
   }
