@@ -252,8 +252,8 @@ class SceneBuilder {
       } catch (const InvalidInput& e) {
         throw error_at(body.scene["velocity"].place, e.what());
       }
-      for (size_t i = 0; i < v.size(); ++i)
-        for (int r = 0; r < 3; ++r) state.qdot.push_back(v[i][r]);
+      for (const Vec3d& velocity : v)
+        for (int r = 0; r < 3; ++r) state.qdot.push_back(velocity[r]);
     }
     state.q = initial_positions();
     state.qdot = model_.numbering.vertex.from_user(state.qdot, 3);
