@@ -247,6 +247,8 @@ class Lecture(CommandLine):
         with open(self.folder / "out/lecture/54-59_overshoot/trials.csv", newline="") as file:
             alphas = [float(row["alpha"]) for row in csv.DictReader(file)]
         self.assertEqual(alphas, [1, 0.5, 0.25])
+        page = re.search(r"browser: open (out/lecture/54-59_overshoot/index\.html)", text)[1]
+        self.assertIn("Newton", (self.folder / page).read_text())
 
     def test_pages_run_on_a_given_mesh(self):
         text = self.lecture("26", "--mesh", self.mesh(4), "--out", "here")
