@@ -227,7 +227,7 @@ class SceneBuilder {
     if (!segments.empty()) model_.damping.push_back(make_rod_bending(model_.mesh, segments));
     model_.mass = std::make_unique<MassMatrix>(model_.mesh, model_.density, kind, angle_masses(model_));
     add_loads_and_damping(actions, model_);
-    add_wind(source_.document, model_);
+    add_wind(source_.document, bodies_, model_, warnings_);
     MeshLoader loader = mesh_loader();
     add_scene_contact(source_.document, loader, initial_positions(), model_);
     add_attachments(source_.document, bodies_, model_, source_.notes);
