@@ -94,8 +94,7 @@ void print_certificate(std::FILE* stream, const RunTotals& totals) {
                totals.grew, totals.most_grown);
 }
 
-// Losses by impacts are sudden and no matter of the scheme.
-constexpr double kSignificantLoss = 0.05, kSuddenLoss = 0.1;  // relative to the energy of motion
+constexpr double kSignificantLoss = 0.05;  // relative to the energy of motion
 
 double energy_of_motion(const RunTotals& totals) { return std::max(totals.most_kinetic, totals.most_changed); }
 
@@ -111,11 +110,11 @@ void print_loss(std::FILE* stream, const RunTotals& totals, const std::string& b
         totals.numerical_loss);
     return;
   }
-  const bool is_gradual = totals.gradual_loss > totals.numerical_loss / 2;
   const std::string part = share < 1 ? fmt::format("{:.0f} % of the energy of motion", 100 * share)
                                      : fmt::format("in motions of at most {:.3g} J", energy_of_motion(totals));
-  fmt::print(stream, "loss       numerical loss {:.3g} J, {}{}\n", totals.numerical_loss, part,
-             is_gradual && !better_scheme.empty() ? "; " + better_scheme + " loses less" : "");
+  const std::string remedy = better_scheme.empty() ? "" : better_scheme + " and ";
+  fmt::print(stream, "loss       numerical loss {:.3g} J, {}; {}shorter steps lose less\n", totals.numerical_loss, part,
+             remedy);
 }
 
 void print_contact(std::FILE* stream, const RunTotals& totals, const RunEnd& end) {
@@ -180,7 +179,6 @@ void RunTotals::add(const StepReport& report) {
   most_changed = std::max(most_changed, std::abs(report.potential_total - first_potential));
   numerical_loss += report.numerical_loss;
   driven_work += report.pin_work + report.obstacle_work;
-  if (report.numerical_loss < kSuddenLoss * energy_of_motion(*this)) gradual_loss += report.numerical_loss;
   if (!worst || badness(report) > badness(*worst)) worst = report;
   if (report.status == Status::budget) {
     ++out_of_time;

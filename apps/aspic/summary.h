@@ -30,7 +30,7 @@ struct RunTotals {
   int with_inverted_tets = 0, first_inverted = 0;  // steps that end with an inverted tet: number, first
   double least_det_F = 1;                          // over all tets at the ends of steps
   double gap_error = 0, contact_force_error = 0;   // maxima, see StepReport
-  double numerical_loss = 0, gradual_loss = 0;     // sum over the steps; over those with a small share of it [J]
+  double numerical_loss = 0;                       // sum over the steps [J]
   double driven_work = 0;                          // of pins, targets and obstacles, sum over the steps [J]
   double most_kinetic = 0;                         // maximum of the kinetic energy, with the loss of the step [J]
   double first_potential = 0;                      // potential energy after the first step [J]
@@ -57,7 +57,7 @@ struct RunEnd {
   std::string solver;                    // methods, their choices and the reasons; empty: no solver
   std::string precision;                 // see precision_of()
   std::string start_warning;             // see Scene::start_warning
-  std::string better_scheme;             // integrator that loses less energy of smooth motion; empty: none
+  std::string better_scheme;             // integrator that loses less energy; empty: none
   std::optional<InvertedTets> inverted;  // in the last state, if it is known
   std::uint64_t state_hash = 0;          // hash of the last state
   std::vector<std::string> untouched;    // obstacles that no body touched at the end of a step

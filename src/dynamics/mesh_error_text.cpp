@@ -62,11 +62,9 @@ std::string remedy(const Model& model, size_t body, double k) {
 
 std::string about(double k) { return k < 0.005 ? "less than 1 %" : "about " + percent(k); }
 
-std::string effect(const BodyMeshError& body, bool swings) {
+std::string effect(const BodyMeshError& body) {
   const double k = body.stiffness, motion = std::isnan(body.motion) ? k / (1 + k) : body.motion;
-  std::string text = " (displacements err by " + percent(motion);
-  if (swings) text += ", frequencies by " + percent(std::sqrt(1 + k) - 1);
-  return text + ")";
+  return " (displacements err by " + percent(motion) + ")";
 }
 
 }  // namespace
@@ -86,8 +84,7 @@ std::string mesh_error_text(const MeshErrorEstimate& error, const Simulation& si
     text += std::string(i > 0 ? "," : "") + " '" + model.bodies[order[i]].name + "' " +
             about(error.bodies[order[i]].stiffness);
   text += " too stiff";
-  if (order.size() == 1 && worst > kEnough)
-    text += effect(error.bodies[order[0]], !simulation.integrator().is_static());
+  if (order.size() == 1 && worst > kEnough) text += effect(error.bodies[order[0]]);
   if (order.size() > kBodiesShown)
     text += formatted("; %d more bodies less", static_cast<int>(order.size() - kBodiesShown));
   text += "." + remedy(model, order[0], worst);

@@ -274,7 +274,7 @@ std::string_view typescript_unknown_step(StepFieldType type) {
 constexpr std::string_view kResultantItems =
     R"(* `reaction_PIN_x`, `_y`, `_z` [N]: mean force of the pin `BODY.PIN` on its vertices
 * `reaction_moment_PIN_x`, ... [N m]: its moment about the origin at the end of the step
-* `load_NAME_x`, ..., `load_moment_NAME_x`, ... [N, N m]: the same of each load at the end of the step
+* `load_NAME_x`, ..., `load_moment_NAME_x`, ... [N, N m]: the same of each load at the end of the step; `contact`: of all obstacles, without friction
 * `body_NAME_x`, ..., `body_moment_NAME_x`, ... [N, N m]: mean of all pins and loads on the body
 * `volume_NAME` [m^3], `pressure_NAME` [Pa]: those of each cavity, the pressure above that outside
 )";

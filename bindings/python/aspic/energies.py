@@ -104,8 +104,8 @@ class TetEnergy(Energy):
 class DerivativeReport:
     """The result of check_derivatives(): `gradient` and `hessian`, each a dict with step, error, order, passed."""
 
-    def __init__(self, gradient, hessian) -> None:
-        self.gradient, self.hessian = gradient, hessian
+    def __init__(self, gradient, hessian, of_vertices=False) -> None:
+        self.gradient, self.hessian, self._of_vertices = gradient, hessian, of_vertices
         self.passed = gradient["passed"] and hessian["passed"]
 
     def __bool__(self):
@@ -115,14 +115,19 @@ class DerivativeReport:
         return "\n".join(self._line(name, check) for name, check in (("gradient", self.gradient),
                                                                      ("hessian ", self.hessian)))
 
-    @staticmethod
-    def _line(name, check):
-        order = "exact" if check["order"] != check["order"] else f"order {check['order']:.1f}"  # NaN: only round-off
-        line = f"{name}: smallest relative error {check['smallest_error']:.1e}, {order}"
+    def _line(self, name, check):
+        is_known = check["order"] == check["order"]  # else NaN: only round-off
+        order = f", order {check['order']:.1f}" if is_known else ", exact" if check["passed"] else ""
+        line = f"{name}: smallest relative error {check['smallest_error']:.1e}{order}"
         if check["passed"]:
             return line + ": correct"
-        place = f"entry {check['row']}" + (f", {check['column']}" if check["column"] >= 0 else "")
+        if check is self.hessian and not self.gradient["passed"]:
+            return line + ": not judged, since it is compared with differences of the wrong gradient"
+        place = self._entry(check["row"]) + (", " + self._entry(check["column"]) if check["column"] >= 0 else "")
         return line + f": WRONG at {place}: {check['found']:.6g} instead of {check['expected']:.6g}"
+
+    def _entry(self, i):
+        return f"vertex {i // 3} {'xyz'[i % 3]}" if self._of_vertices else f"entry {i}"
 
 
 def check_derivatives(f, x, length=None, tolerance=1e-6, fixed=None) -> DerivativeReport:
@@ -143,7 +148,8 @@ def check_derivatives(f, x, length=None, tolerance=1e-6, fixed=None) -> Derivati
     value, gradient, product = _functions(f, x.shape)
     mask = None if fixed is None else np.broadcast_to(np.asarray(fixed, bool).reshape(
         np.shape(fixed) + (1,) * (x.ndim - np.ndim(fixed))), x.shape).ravel()
-    return DerivativeReport(*_aspic.check_derivatives(value, gradient, product, flat, length or 1.0, tolerance, mask))
+    checks = _aspic.check_derivatives(value, gradient, product, flat, length or 1.0, tolerance, mask)
+    return DerivativeReport(*checks, of_vertices=x.ndim == 2 and x.shape[1] == 3)
 
 
 def _functions(f, shape):

@@ -174,3 +174,4 @@ def test_derivative_check_finds_a_wrong_entry():
     report = aspic.check_derivatives(Wrong(), np.linspace(.5, 1.4, 7))
     assert not report
     assert report.gradient["row"] == 2 and "WRONG at entry 2" in repr(report)
+    assert repr(report).count("WRONG") == 1 and "not judged" in repr(report)
