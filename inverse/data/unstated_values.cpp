@@ -61,7 +61,9 @@ void choose_layers(DataSet& data) {
   }
   for (const double k : chosen)
     data.notes.push_back("the layer of the tip has the stiffness " + three_digits(k) +
-                         " Pa/m: far stiffer than the body, which seems to have E = " + three_digits(E) + " Pa");
+                         " Pa/m, far stiffer than the body, which seems to have E = " + three_digits(E) +
+                         " Pa; it is fitted, too, which widens the interval of E (a rigid tip: stiffness = " +
+                         three_digits(10 * k) + " in [[tip]])");
 }
 
 }  // namespace aspic
