@@ -202,6 +202,9 @@ class Convert(CommandLine):
         self.write("box.mesh", box_mesh())
         self.assertIn("boundary", self.aspic("convert", "box.mesh", "box.obj").stdout)
         self.assertIn("26 vertices, 48 triangles", self.aspic("check", "box.obj").stdout)
+        self.aspic("convert", "box.obj", "box.glb")
+        self.assertIn("26 vertices, 48 triangles", self.aspic("check", "box.glb").stdout)
+        self.assertIn("name the file .glb", self.aspic("convert", "box.obj", "box.gltf", code=2).stderr)
 
     def test_an_unknown_extension_is_bad_input(self):
         self.write("box.mesh", box_mesh())

@@ -56,6 +56,12 @@ class Faq(CommandLine):
         self.assertEqual(contact_force(CUBE), 0)
         self.assertGreater(contact_force(CUBE + floor), 1)
 
+    def test_contact_stops_cloth(self):
+        self.write("cloth.toml", CUBE + '[[body]]\nname = "cloth"\nshape = { rectangle = { width = 0.2, height = 0.2, size = 0.1 } }\nshell = { thickness = 1e-3 }\n'
+                   "translate = [0, 0, 0.3]\nmaterial = { young = 1e5 }\n")
+        self.assert_cured("contact is off", self.output("check", "cloth.toml"),
+                          self.output("check", "cloth.toml", "--set", "contact={}"))
+
     def test_a_stiffer_body_is_not_crushed(self):
         self.write("cube.toml", CUBE + '[[body.pin]]\nwhere = "Y < 0.051"\n')
         self.assert_cured("its weight crushes it", self.output("check", "cube.toml", "--set", "material.young=100"),

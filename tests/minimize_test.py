@@ -91,6 +91,7 @@ class Minimize(CommandLine):
                                    (["rosenbrock", "--criterion", "scal"], "did you mean 'scale'"),
                                    (["rosenbrock", "--start", "nan,1"], "two finite numbers"),
                                    (["rosenbrock", "--start", "1"], "two finite numbers"),
+                                   (["rosenbrock", "--method", "newton,lbfgs", "--trace", "t"], "single method"),
                                    (["rosenbrock", "--shrink", "1"], "at most 0.99"),
                                    (["--expression", "log(x)", "--start", "-1,0"], "not finite at the start"),
                                    (["--expression", "x + z", "--start", "0,0"], "unknown name 'z'"),
@@ -113,6 +114,18 @@ class Minimize(CommandLine):
         self.assertTrue((self.folder / "model.png").read_bytes().startswith(b"\x89PNG"))
         with open(self.folder / "trace" / "iterations.csv", newline="") as file:
             self.assertEqual(len(list(csv.DictReader(file))), 18)
+
+    def test_draws_the_paths_of_several_methods(self):
+        self.aspic("minimize", "rosenbrock", "--method", "gradient_descent,newton:clamped", "--max-iterations", "20000",
+                   "--plot", "paths.svg")
+        picture = (self.folder / "paths.svg").read_text()
+        self.assertRegex(picture, r">gradient descent, \d+ iterations<")
+        self.assertRegex(picture, r">newton:clamped, \d+ iterations<")
+
+    def test_json_names_the_method(self):
+        rows, end = self.rows("rosenbrock", "--method", "newton", "--method", "lbfgs")
+        self.assertEqual([row["method"] for row in rows if "status" in row] + [end["method"]], ["newton", "lbfgs"])
+        self.assertEqual({row["method"] for row in rows}, {"newton", "lbfgs"})
 
     def test_missing_gnuplot_is_reported_first(self):
         done = subprocess.run([ASPIC, "minimize", "rosenbrock", "--plot", "path.svg"], cwd=self.folder,
@@ -139,9 +152,13 @@ class Compare(CommandLine):
         self.assertEqual(values, sorted(values, reverse=True))
 
     def test_unfinished_method_shows_in_exit_code(self):
-        out = self.aspic("compare", self.beam(cells="40, 10, 10"), "--methods", "newton,gradient_descent",
-                         "--max-seconds", "0.01", code=3).stdout
-        self.assertIn("interrupted", out)
+        def distance(seconds):
+            out = self.aspic("compare", self.beam(cells="40, 10, 10"), "--methods", "gradient_descent",
+                             "--max-seconds", seconds, code=3).stdout
+            self.assertIn("time limit", out)
+            return json.loads((self.folder / "out" / "compare_beam" / "comparison.json").read_text())["methods"][0]["distance"]
+
+        self.assertLess(distance("2"), distance("0.01"))  # that of the last iterate
 
     def test_bad_input_is_named(self):
         for arguments, message in ((["--methods", "newtn"], "newton"), (["--methods", "newton:clampd"], "clamped"),
@@ -234,6 +251,8 @@ class Lecture(CommandLine):
         with open(self.folder / "out/lecture/54-59_overshoot/trials.csv", newline="") as file:
             alphas = [float(row["alpha"]) for row in csv.DictReader(file)]
         self.assertEqual(alphas, [1, 0.5, 0.25])
+        page = re.search(r"browser: open (out/lecture/54-59_overshoot/index\.html)", text)[1]
+        self.assertIn("Newton", (self.folder / page).read_text())
 
     def test_pages_run_on_a_given_mesh(self):
         text = self.lecture("26", "--mesh", self.mesh(4), "--out", "here")

@@ -342,6 +342,14 @@ class Setup(CommandLine):
         self.assertEqual(failed.returncode, 1)
         self.assertIn("the build failed", failed.stderr)
 
+    def test_the_page_is_announced_with_its_duration(self):
+        setup = pathlib.Path(__file__).parent.parent / "tools/setup.sh"
+        script = f"root={self.folder}; . {setup}; wasm_preset() {{ say prepare; }}; build() {{ say build; }}; build_site"
+        lines = subprocess.run(["sh", "-c", script], capture_output=True, text=True, timeout=60).stderr.splitlines()
+        self.assertIn("out/site/index.html", lines[0])
+        self.assertIn("5 to 25 minutes the first time", lines[1])
+        self.assertEqual(lines[2:], ["prepare", "build"])
+
     def run_script(self, *arguments):
         return subprocess.run([pathlib.Path(__file__).parent.parent / "run", *arguments], capture_output=True, text=True,
                               env={"PATH": "/usr/bin:/bin"}, timeout=10)

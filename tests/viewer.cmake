@@ -10,7 +10,7 @@ if(TARGET aspic_viewer)
 
   add_aspic_tests(test_lessons ${CMAKE_SOURCE_DIR}/apps/aspic/lecture/lessons_test.cpp
     ${CMAKE_SOURCE_DIR}/apps/aspic/formulas_test.cpp ${CMAKE_SOURCE_DIR}/apps/aspic/gallery_test.cpp
-    ${CMAKE_SOURCE_DIR}/apps/aspic/step_fields_test.cpp ${CMAKE_SOURCE_DIR}/apps/aspic/scene_gallery_test.cpp)
+    ${CMAKE_SOURCE_DIR}/apps/aspic/progress_test.cpp ${CMAKE_SOURCE_DIR}/apps/aspic/step_fields_test.cpp ${CMAKE_SOURCE_DIR}/apps/aspic/scene_gallery_test.cpp)
   target_link_libraries(test_lessons PRIVATE aspic_commands)
   target_compile_definitions(test_lessons PRIVATE ASPIC_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
 

@@ -273,8 +273,8 @@ wasm_preset() {
 
 # build_site [threads]: builds out/site/index.html; with `threads` also a file beside it with an engine for isolated pages.
 build_site() {
-  [ -f "$root/out/site/index.html" ] ||
-    say "Building the page takes 5 to 25 minutes the first time; its last step, the link, takes several of them."
+  say "Compiling the simulation for browsers, and packing viewer, scenes and lecture with it into out/site/index.html.
+This takes 5 to 25 minutes the first time; its last step, the link, takes several of them after any change."
   if [ "${1-}" = threads ]; then
     wasm_preset wasm-threads
     build aspic_engine

@@ -26,7 +26,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-namespace fs = std::filesystem;
+std::string reached(const MethodResult& result) {
+  const Status status = result.report.status;
+  if (result.same_minimizer) return "same minimizer";
+  if (is_success(status)) return "another point";
+  const bool is_late = status == Status::budget || status == Status::interrupted;
+  return is_late ? "time limit" : std::string(to_string(status));
+}
+
+std::string distance(const MethodResult& result) {
+  return std::isnan(result.distance) ? "-" : fmt::format("{:.1e}", result.distance);
+}
 
 void write_methods(const fs::path& path, const Comparison& comparison) {
   CsvFile file = CsvFile::create(
@@ -116,14 +126,14 @@ std::vector<Cell> row_of(const MethodResult& result) {
   const Verdict verdict = result.same_minimizer ? Verdict::pass : Verdict::fail;
   const StepReport& report = result.report;
   return {{result.method},
-          {std::string(is_success(report.status) ? "same minimizer" : to_string(report.status)), verdict},
+          {reached(result), verdict},
           {std::to_string(report.iterations)},
           {std::to_string(report.gradients)},
           {std::to_string(report.hessians)},
           {fmt::format("{:.3g}", 1e3 * result.seconds)},
           {fmt::format("{:.2e}", result.excess)},
           {fmt::format("{:.2e}", report.objective_gradient)},
-          {fmt::format("{:.2e}", result.distance)}};
+          {distance(result)}};
 }
 
 void write_page(const fs::path& folder, const std::string& scene, const Comparison& comparison, bool has_pictures) {
@@ -175,12 +185,9 @@ void print_table(const Comparison& comparison) {
              "gradients", "Hessians", "time [ms]", "excess of E", "dist. [m]");
   for (const MethodResult& result : comparison.results) {
     const StepReport& report = result.report;
-    const std::string reached = result.same_minimizer       ? "same minimizer"
-                                : is_success(report.status) ? "another point"
-                                                            : std::string(to_string(report.status));
-    fmt::print("{:<{}}  {:<16} {:>10} {:>10} {:>8} {:>10.3g} {:>11.1e} {:>10.1e}\n", result.method, width, reached,
-               report.iterations, report.gradients, report.hessians, 1e3 * result.seconds, result.excess,
-               result.distance);
+    fmt::print("{:<{}}  {:<16} {:>10} {:>10} {:>8} {:>10.3g} {:>11.1e} {:>10}\n", result.method, width,
+               reached(result), report.iterations, report.gradients, report.hessians, 1e3 * result.seconds,
+               result.excess, distance(result));
   }
 }
 
@@ -203,7 +210,9 @@ int compare(const CompareArguments& arguments) {
   fmt::print("{}: {}; step {} by each method, {} threads\n", scene.name, size_text(model.mesh), arguments.step,
              thread_count());
   std::fflush(stdout);
-  const auto begun = [](const std::string& method) { fmt::print(stderr, "{} ...\n", method); };
+  const auto begun = [&](const std::string& method) {
+    fmt::print(stderr, "{} ... (at most {:.3g} s)\n", method, arguments.max_seconds);
+  };
   catch_interrupts();
   const Comparison comparison =
       compare_methods(scene.simulation, {.methods = methods,
@@ -218,6 +227,7 @@ int compare(const CompareArguments& arguments) {
   fmt::print("E* = {:.10g} by Newton's method at round-off, {} iterations, |g| = {:.1e}\n\n",
              comparison.reference.objective, comparison.reference.iterations, comparison.reference.objective_gradient);
   print_table(comparison);
+  fmt::print("excess of E: E - E*, relative to the start\n");
 
   const std::string missing = write_comparison(folder, scene.name, comparison);
   if (!missing.empty()) fmt::print(stderr, "note: no pictures: {}\n", missing);
@@ -252,7 +262,7 @@ Exit codes: 0 every method reached the same minimizer, 2 bad input, 3 some did n
       ->check(CLI::Range(1, 1000000000));
   command->add_option("--set", arguments->overrides, "Override values: solver.tolerance=1e-8; several may follow")
       ->allow_extra_args(false);
-  command->add_option("--max-seconds", arguments->max_seconds, "Time limit per method [s]")
+  command->add_option("--max-seconds", arguments->max_seconds, "Time limit per method [s]; 60 by default")
       ->check(CLI::Range(1e-3, 1e9));
   command->add_option("--threads", arguments->threads, "Threads; all cores by default")->check(CLI::Range(1, 1024));
   command->add_option("--out", arguments->out, "Folder for tables and pictures; out/compare_NAME by default");

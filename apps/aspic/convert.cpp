@@ -83,8 +83,7 @@ int convert(const ConvertArguments& arguments) {
                                      arguments.out.string()));
     }
   }
-  const std::string remedy =
-      format.extension == ".glb" ? "; a run can be written: aspic convert out/NAME NAME.glb" : "";
+  const std::string remedy = format.extension == ".gltf" ? "; name the file .glb" : "";
   throw InvalidInput(fmt::format("{}: {} can be read but not written{}", arguments.out.string(), format.name, remedy));
 }
 
@@ -107,6 +106,7 @@ void add_convert(CLI::App& app, Action& action) {
       "convert", "Converts a mesh to another format, selected by the file name, or a run to animated glTF");
   command->footer([] {
     return "\nExamples:\n  aspic convert bunny.msh bunny.vtu\n  aspic convert bunny.mesh bunny.obj    the boundary\n"
+           "  aspic convert bunny.obj bunny.glb     for Blender and browsers\n"
            "  aspic convert out/bunny bunny.glb     the skins and obstacles of a run, at most 240 frames\n" +
            format_table();
   });

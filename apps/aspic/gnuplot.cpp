@@ -109,4 +109,9 @@ std::string color(int index) {
   return fmt::format("'{}'", kColors[static_cast<size_t>(index) % std::size(kColors)]);
 }
 
+int mark(int index) {
+  static constexpr int kMarks[] = {7, 5, 9, 13, 11};
+  return kMarks[static_cast<size_t>(index) % std::size(kMarks)];
+}
+
 }  // namespace aspic::cli

@@ -33,6 +33,7 @@ std::string range(const std::optional<double>& min, const std::optional<double>&
 void append_row(std::string& text, std::initializer_list<double> values);
 
 std::string color(int index);  // '#rrggbb', distinguishable for all kinds of color vision [Okabe and Ito 2008]
+int mark(int index);           // filled circle, square, triangle, diamond, inverted triangle
 inline constexpr const char* kInk = "#3a3a3a";
 inline constexpr const char* kGrid = "#e2e2e2";
 

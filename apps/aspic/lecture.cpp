@@ -78,6 +78,9 @@ int run_page(int page, const LectureArguments& arguments) {
   for (const Result& result : results) {
     write_file(result.sheet.folder() / "result.json", to_json(result).dump(2) + "\n");
     print(result);
+    const fs::path file = result.sheet.folder() / "index.html";
+    write_page(file, stage.mesh_note(), result);
+    fmt::print("browser: open {}\n", file.string());
     passes = passes && result.sheet.passes();
   }
   return passes ? exit_done : exit_unconverged;
@@ -127,7 +130,7 @@ void add_lecture(CLI::App& app, Action& action) {
   command->footer(R"(
 Examples:
   aspic lecture                       list of the 62 pages
-  aspic lecture 53                    claim of page 53, measurement, pass or fail
+  aspic lecture 53                    claim of page 53, measurement, pass or fail, as text and as a web page
   aspic lecture all                   all pages; results in out/lecture/index.html
   aspic lecture 33 --mesh bunny.mesh  on another mesh of tets or closed surface
 

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "aspic/interrupt.h"
 #include "aspic/minimize.h"
 #include "base/error.h"
@@ -42,7 +40,6 @@ Minimization minimize(const Problem& problem, const SolverOptions& options, cons
   check(options);
   const auto direction = make_search_direction(options);
   Minimization done{.method = options.method, .definiteness = definiteness_of(options)};
-  std::replace(done.method.begin(), done.method.end(), '_', ' ');
   std::vector<double> x = {problem.start[0], problem.start[1], 0};
   const auto observe = [&](const LiveIteration& live) {
     done.iterations.push_back({static_cast<const Iteration&>(live),

@@ -10,6 +10,7 @@
 
 #include "aspic/commands.h"
 #include "aspic/interrupt.h"
+#include "aspic/method_text.h"
 #include "aspic/plot.h"
 #include "base/error.h"
 #include "base/number_chars.h"
@@ -26,7 +27,8 @@ namespace fs = std::filesystem;
 
 struct MinimizeArguments {
   std::string function, expression, start;
-  std::string criterion = "scale", test = "textbook";
+  std::vector<std::string> methods = {"newton"};
+  std::string definiteness, criterion = "scale", test = "textbook";
   SolverOptions solver;
   fs::path trace, plot, model;
   int iteration = 0;
@@ -76,13 +78,14 @@ void print_row(const IterationRecord& record) {
              it.value, it.gradient_norm, it.alpha, it.trials, it.direction.projected ? "  projected" : "");
 }
 
-std::string json_row(const IterationRecord& record) {
+std::string json_row(const std::string& method, const IterationRecord& record) {
   nlohmann::ordered_json trials = nlohmann::json::array();
   for (const Trial& trial : record.tried)
     trials.push_back(
         {{"alpha", trial.alpha}, {"value", trial.value}, {"bound", trial.bound}, {"accepted", trial.accepted}});
   const Iteration& it = record.iteration;
-  const nlohmann::ordered_json line = {{"iteration", it.index},
+  const nlohmann::ordered_json line = {{"method", method},
+                                       {"iteration", it.index},
                                        {"x", record.x},
                                        {"value", it.value},
                                        {"gradient_norm", it.gradient_norm},
@@ -94,10 +97,16 @@ std::string json_row(const IterationRecord& record) {
   return line.dump();
 }
 
-Minimization minimize(const Problem& problem, const MinimizeArguments& arguments) {
-  SolverOptions solver = arguments.solver;
+SolverOptions solver_of(const std::string& method, const MinimizeArguments& arguments) {
+  SolverOptions solver = method_named(method, arguments.solver);
+  if (!arguments.definiteness.empty()) solver.definiteness = arguments.definiteness;
   solver.minimize.criterion = criterion_named(arguments.criterion);
   solver.minimize.line_search.test = decrease_test_named(arguments.test);
+  return solver;
+}
+
+Minimization minimize(const Problem& problem, const std::string& method, const MinimizeArguments& arguments) {
+  const SolverOptions solver = solver_of(method, arguments);
   std::optional<Trace> trace;
   if (!arguments.trace.empty())
     trace.emplace(arguments.trace,
@@ -110,11 +119,12 @@ Minimization minimize(const Problem& problem, const MinimizeArguments& arguments
   Minimization done = minimize(problem, solver, [&](const IterationRecord& record, const LiveIteration& live) {
     if (trace) trace->on_iteration(1, live);
     if (arguments.json)
-      fmt::print("{}\n", json_row(record));
+      fmt::print("{}\n", json_row(method, record));
     else
       print_row(record);
   });
   if (trace) trace->close();
+  done.method = method;
   return done;
 }
 
@@ -179,7 +189,8 @@ void print_minimum(const Problem& problem, const Minimization& done) {
 
 void print_json_summary(const Problem& problem, const Minimization& done) {
   const MinimizeReport& report = done.report;
-  nlohmann::ordered_json line = {{"status", to_string(report.status)},
+  nlohmann::ordered_json line = {{"method", done.method},
+                                 {"status", to_string(report.status)},
                                  {"converged", is_success(report.status)},
                                  {"iterations", report.iterations},
                                  {"x", done.end},
@@ -203,35 +214,45 @@ int list() {
   return exit_done;
 }
 
-int run(const MinimizeArguments& arguments) {
-  if (arguments.list) return list();
+// Throws InvalidInput, before any work.
+void check(const MinimizeArguments& arguments) {
+  if (arguments.methods.size() > 1 && !(arguments.trace.empty() && arguments.model.empty()))
+    throw InvalidInput("--trace and --plot-model show a single method; give one --method");
   for (const fs::path& picture : {arguments.plot, arguments.model})
     if (!picture.empty()) require_drawable(picture);
+  for (const std::string& method : arguments.methods) make_search_direction(solver_of(method, arguments));
+}
+
+int run(const MinimizeArguments& arguments) {
+  if (arguments.list) return list();
+  check(arguments);
   const Problem problem = problem_of(arguments);
   catch_interrupts();
-  Minimization done = minimize(problem, arguments);
-  if (arguments.json)
-    print_json_summary(problem, done);
-  else
-    print_minimum(problem, done);
-  if (done.report.status == Status::interrupted) return exit_signal + interrupt_signal();
-  const int code = is_success(done.report.status) ? exit_done : exit_unconverged;
-  if (!arguments.model.empty()) draw_model(arguments.model, problem, done, arguments.iteration);
-  if (!arguments.plot.empty()) {
-    const std::string title = fmt::format("{} on f = {}", done.method, problem.formula);
-    std::vector<Minimization> methods;
-    methods.push_back(std::move(done));
-    draw_paths(arguments.plot, title, problem, methods);
+  int code = exit_done;
+  std::vector<Minimization> all;
+  for (const std::string& method : arguments.methods) {
+    const Minimization& done = all.emplace_back(minimize(problem, method, arguments));
+    if (arguments.json)
+      print_json_summary(problem, done);
+    else
+      print_minimum(problem, done);
+    if (done.report.status == Status::interrupted) return exit_signal + interrupt_signal();
+    if (!is_success(done.report.status)) code = exit_unconverged;
   }
+  if (!arguments.model.empty()) draw_model(arguments.model, problem, all.front(), arguments.iteration);
+  if (!arguments.plot.empty()) draw_paths(arguments.plot, "f = " + problem.formula, problem, all);
   return code;
 }
 
 void add_solver_options(CLI::App* command, MinimizeArguments& arguments) {
-  SolverOptions& solver = arguments.solver;
-  MinimizeOptions& minimize = solver.minimize;
+  MinimizeOptions& minimize = arguments.solver.minimize;
   minimize.max_iterations = 200;
-  command->add_option("--method", solver.method, "Method, newton by default; --list prints all");
-  command->add_option("--definiteness", solver.definiteness,
+  command
+      ->add_option("--method", arguments.methods,
+                   "Methods NAME[:OPTION...], separated by commas; newton by default; --list prints all")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command->add_option("--definiteness", arguments.definiteness,
                       fmt::format("Definiteness of Newton's Hessian: {}", fmt::join(definiteness_names(), ", ")));
   command->add_option("--criterion", arguments.criterion,
                       fmt::format("Convergence test: {}", fmt::join(criterion_names(), ", ")));
@@ -256,7 +277,7 @@ void add_minimize(CLI::App& app, Action& action) {
   command->footer(R"(
 Examples:
   aspic minimize rosenbrock
-  aspic minimize rosenbrock --method gradient_descent --max-iterations 20000 --plot zigzag.svg
+  aspic minimize rosenbrock --method gradient_descent,newton --max-iterations 20000 --plot zigzag.svg
   aspic minimize rosenbrock --test none                 Newton's method overshoots
   aspic minimize rosenbrock --plot-model model.png --iteration 1
   aspic minimize --expression "cosh(x) + (y - x)^2" --start 2,-1
@@ -268,12 +289,12 @@ Exit codes: 0 done, 2 bad input, 3 not converged, 130 interrupted by Ctrl-C, 143
   command->add_option("--start", arguments->start, "Initial guess x,y");
   add_solver_options(command, *arguments);
   command->add_option("--trace", arguments->trace, "Directory for a trace of every trial of every iteration");
-  command->add_option("--plot", arguments->plot, "Draw a contour map with path and rejected trials (.svg or .png)");
+  command->add_option("--plot", arguments->plot, "Draw a contour map with paths and rejected trials (.svg or .png)");
   command->add_option("--plot-model", arguments->model, "Draw surface and quadratic model of --iteration (.png)");
   command->add_option("--iteration", arguments->iteration, "Iteration of the model to draw, 0 by default")
       ->check(CLI::NonNegativeNumber);
   command->add_flag("--list", arguments->list, "List functions and methods");
-  command->add_flag("--json", arguments->json, "Print a line of JSON per iteration, and one at the end");
+  command->add_flag("--json", arguments->json, "Print a line of JSON per iteration, and one at the end of a method");
   command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
 }
 

@@ -31,7 +31,7 @@ struct IterationRecord {
 };
 
 struct Minimization {
-  std::string method;  // description
+  std::string method;  // NAME[:OPTION...]
   NewtonDefiniteness definiteness = {};
   std::vector<IterationRecord> iterations;
   MinimizeReport report;

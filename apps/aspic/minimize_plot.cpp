@@ -45,6 +45,12 @@ Region region(const Problem& problem, std::span<const Minimization> methods) {
   return all;
 }
 
+std::string name_in_picture(const Minimization& done) {
+  std::string name = done.method;
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
 template <class F>
 SampledFunction sampled(const Region& region, int samples, F f) {
   SampledFunction grid;
@@ -86,7 +92,8 @@ void draw_paths(const std::filesystem::path& path, const std::string& title, con
                  .paths = {},
                  .minimizer = problem.minimizer};
   for (const Minimization& done : methods) {
-    PlanarPath line{.label = done.method, .points = {problem.start}};
+    PlanarPath line{.label = fmt::format("{}, {} iterations", name_in_picture(done), done.report.iterations),
+                    .points = {problem.start}};
     for (const IterationRecord& record : done.iterations) {
       line.points.push_back(record.next);
       for (const Trial& trial : record.tried)
@@ -107,7 +114,7 @@ void draw_model(const std::filesystem::path& path, const Problem& problem, const
   const QuadraticModel model = f.model(record.x, projection(done, record));
   const Planar target = along(record, 1);
   const Region box = neighborhood(record, region(problem, {&done, 1}));
-  SurfacePlot plot{.title = fmt::format("{}, iteration {}: f = {}", done.method, iteration, problem.formula),
+  SurfacePlot plot{.title = fmt::format("{}, iteration {}: f = {}", name_in_picture(done), iteration, problem.formula),
                    .z_label = "f",
                    .function = sampled(box, 45, [&](const Planar& p) { return f.at(p); }),
                    .model = sampled(box, 45, [&](const Planar& p) { return model.at(p); }),

@@ -46,18 +46,15 @@ void add_axis(Gnuplot& plot, char name, Axis axis, const Range& data) {
 
 std::string style(const Series& series, int color_index) {
   const std::string with_color = fmt::format("lc rgb {}", color(color_index));
-  // Filled circle, square, triangle, diamond, inverted triangle.
-  static constexpr int kMarks[] = {7, 5, 9, 13, 11};
-  const int mark = kMarks[static_cast<size_t>(color_index) % std::size(kMarks)];
   switch (series.style) {
     case SeriesStyle::line:
       return fmt::format("with lines lw 1.8 {}", with_color);
     case SeriesStyle::dashed:
       return fmt::format("with lines lw 1.4 dt (9,6) {}", with_color);
     case SeriesStyle::points:
-      return fmt::format("with points pt {} ps 0.6 {}", mark, with_color);
+      return fmt::format("with points pt {} ps 0.6 {}", mark(color_index), with_color);
     case SeriesStyle::line_and_points:
-      return fmt::format("with linespoints lw 1.5 pt {} ps 0.6 {}", mark, with_color);
+      return fmt::format("with linespoints lw 1.5 pt {} ps 0.6 {}", mark(color_index), with_color);
   }
   return "";
 }

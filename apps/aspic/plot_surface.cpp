@@ -83,19 +83,20 @@ void draw(const std::filesystem::path& path, const ContourMap& map) {
   add_contours(plot, f);
   plot.add(fmt::format("set xrange {}\nset yrange {}", range(f.x.front(), f.x.back()), range(f.y.front(), f.y.back())));
   std::string layers = "plot $contours using 1:2:(rank($3)) with lines lw 1 lc palette notitle";
-  constexpr size_t kMarked = 100;  // a longer path has no room for marks
+  constexpr size_t kMarked = 100;  // marks of a path; more would hide it
   bool has_rejected = false;
   int next = 1;  // blue is reserved for contours
   for (const PlanarPath& line : map.paths) {
     const std::string ink = color(next);
+    const std::string marks =
+        fmt::format("linespoints pt {} pi {} ps 0.45 lw", mark(next - 1), 1 + line.points.size() / kMarked);
     next = next % 6 + 1;
     if (!line.rejected.empty())
       layers += fmt::format(", {} using 1:2 with points pt 2 ps 0.5 lw 1 lc rgb {} {}",
                             plot.data_file(point_table(line.rejected)), ink,
                             std::exchange(has_rejected, true) ? "notitle" : "title " + label("rejected trials"));
     layers += fmt::format(", {} using 1:2 with {} lc rgb {} title {}", plot.data_file(point_table(line.points)),
-                          line.points.size() > kMarked ? "lines lw 1" : "linespoints pt 7 ps 0.45 lw 1.6", ink,
-                          label(line.label));
+                          marks + (line.points.size() > kMarked ? " 1" : " 1.6"), ink, label(line.label));
     if (!line.points.empty())  // initial guess
       layers += fmt::format(", {} using 1:2 with points pt 6 ps 1.1 lw 1.6 lc rgb {} notitle",
                             plot.data_file(point_table({line.points.front()})), ink);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <string_view>
+#include <utility>
 
 #include "aspic/streams.h"
 
@@ -18,6 +19,7 @@ constexpr double kRedrawInterval = 0.1;  // on a terminal [s]
 constexpr double kLongStep = 1;          // time of a step after which its iterations are shown on a terminal [s]
 constexpr double kLineFraction = 0.05;   // fraction of the run between lines in a pipe
 constexpr int kBarWidth = 20;
+constexpr size_t kRecentSteps = 20;  // for the time left
 
 // Terminals without escape sequences, such as an editor's shell, are called dumb.
 bool can_redraw() {
@@ -46,10 +48,11 @@ std::string duration_text(double seconds) {
   return fmt::format("{} h {:02} min", total / 3600, total / 60 % 60);
 }
 
-StatusLine::StatusLine(std::FILE* stream)
-    : stream_(stream), terminal_(isatty(descriptor(stream)) != 0 && can_redraw()) {}
-
-double StatusLine::seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+StatusLine::StatusLine(std::FILE* stream, WallClock clock)
+    : stream_(stream),
+      terminal_(isatty(descriptor(stream)) != 0 && can_redraw()),
+      clock_(std::move(clock)),
+      start_(clock_()) {}
 
 void StatusLine::draw(std::string line) {
   if (terminal_) {
@@ -67,8 +70,8 @@ void StatusLine::erase() {
   drawn_ = false;
 }
 
-Progress::Progress(std::FILE* stream, int first_step, int last_step)
-    : StatusLine(stream), first_(first_step), last_(last_step), shown_step_(first_step) {}
+Progress::Progress(std::FILE* stream, int first_step, int last_step, WallClock clock)
+    : StatusLine(stream, std::move(clock)), first_(first_step), last_(last_step), shown_step_(first_step) {}
 
 bool Progress::is_due(const StepReport& report) const {
   if (report.step == last_) return true;
@@ -77,12 +80,17 @@ bool Progress::is_due(const StepReport& report) const {
   return waited >= kLineInterval || report.step - shown_step_ >= kLineFraction * (last_ - first_);
 }
 
+double Progress::seconds_per_step() const {
+  const size_t count = std::min(ends_.size() - 1, kRecentSteps);
+  return (ends_.back() - ends_[ends_.size() - 1 - count]) / static_cast<double>(count);
+}
+
 void Progress::show(const StepReport& report) {
+  ends_.push_back(seconds());
   if (!is_due(report)) return;
   shown_at_ = seconds();
   shown_step_ = report.step;
-  const double per_step = shown_at_ / (report.step - first_);
-  print(fmt::format("{}  {} left", step_text(report, last_), duration_text(per_step * (last_ - report.step))),
+  print(fmt::format("{}  {} left", step_text(report, last_), duration_text(seconds_per_step() * (last_ - report.step))),
         static_cast<double>(report.step) / last_);
 }
 

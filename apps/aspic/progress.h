@@ -1,9 +1,10 @@
 // Progress of a run: one line that is redrawn on a terminal, occasional lines in a pipe.
 #pragma once
-#include <chrono>
 #include <cstdio>
 #include <string>
+#include <vector>
 
+#include "base/stop_token.h"
 #include "dynamics/step_report.h"
 
 namespace aspic::cli {
@@ -12,10 +13,10 @@ inline constexpr double kLineInterval = 10;  // time between two lines in a pipe
 
 class StatusLine {
  public:
-  explicit StatusLine(std::FILE* stream);
+  explicit StatusLine(std::FILE* stream, WallClock clock = steady_seconds);
 
  protected:
-  double seconds() const;       // since the start
+  double seconds() const { return clock_() - start_; }
   void draw(std::string line);  // on a terminal over the previous one
   void erase();
 
@@ -25,13 +26,13 @@ class StatusLine {
   bool drawn_ = false;
 
  private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point start_ = Clock::now();
+  WallClock clock_;
+  double start_;
 };
 
 class Progress : public StatusLine {
  public:
-  Progress(std::FILE* stream, int first_step, int last_step);
+  Progress(std::FILE* stream, int first_step, int last_step, WallClock clock = steady_seconds);
   void show(const StepReport& report);
   void show(int step, const Iteration& iteration);  // for steps that last long
   void message(const std::string& line);            // separate line above the bar
@@ -40,8 +41,10 @@ class Progress : public StatusLine {
  private:
   bool is_due(const StepReport& report) const;
   void print(std::string line, double done);  // `done`: fraction of the run
+  double seconds_per_step() const;            // mean of recent steps, because steps in contact take longer
 
   int first_, last_, shown_step_;
+  std::vector<double> ends_ = {0};  // start of the first step, and end of each [s]
 };
 
 std::string duration_text(double seconds);  // "12 s", "3 min 20 s", "2 h 05 min"

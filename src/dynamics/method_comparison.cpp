@@ -107,13 +107,15 @@ class Comparer {
   MethodResult run(const ComparedMethod& method, const StepReport& reference) {
     SolverOptions solver = method.solver;
     solver.minimize.max_iterations = kMaxIterations;
-    solver.time_budget = 0;
+    // Without a line search, E may rise until the deadline; such a step is discarded.
+    const bool keeps_last = solver.minimize.line_search.test != DecreaseTest::none;
+    solver.time_budget = keeps_last ? options_.max_seconds : 0;
     solver.minimize.lag_at = lag_at_;
     MethodResult best;
     for (int i = 0; i < kRepetitions; ++i) {
       simulation_.restore(start_);
       simulation_.set_solver(solver);
-      MethodResult result = run_once();
+      MethodResult result = run_once(keeps_last);
       if (i == 0 || result.seconds < best.seconds) best = std::move(result);
       if (best.seconds > kWorthRepeating || options_.stop.stopped()) break;
     }
@@ -123,7 +125,7 @@ class Comparer {
     return best;
   }
 
-  MethodResult run_once() {
+  MethodResult run_once(bool keeps_last) {
     MethodResult result;
     Stopwatch stopwatch;
     double seconds = 0;
@@ -143,7 +145,7 @@ class Comparer {
                                  .seconds = seconds});
           stopwatch.lap();
         },
-        StopToken([&] { return seconds >= options_.max_seconds || options_.stop.stopped(); }));
+        StopToken([&] { return (!keeps_last && seconds >= options_.max_seconds) || options_.stop.stopped(); }));
     result.seconds = seconds;
     if (!result.work.empty()) {
       result.work.back().value = result.report.objective;
@@ -160,6 +162,7 @@ class Comparer {
     for (size_t i = 0; i < x.size(); ++i) dx[i] = x[i] - reference_[i];
     for (size_t i = 0; i + 2 < x.size(); i += 3)
       result.distance = std::max(result.distance, std::hypot(dx[i], dx[i + 1], dx[i + 2]));
+    if (result.report.status == Status::interrupted) result.distance = NAN;  // the step was discarded
     const MassMatrix& mass = *simulation_.model().mass;
     mass.multiply(dx, Mdx);
     double square = 0, norm = 0;

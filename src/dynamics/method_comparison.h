@@ -25,7 +25,7 @@ struct MethodResult {
   std::vector<WorkPoint> work;  // initial guess, and the end of each iteration
   double seconds = 0;           // time of the fastest run
   double excess = 0;            // (E - E*) / (E at the start - E*), where E* is that of the reference
-  double distance = 0;          // largest distance of a vertex from the reference [m]
+  double distance = 0;          // largest distance of a vertex from the reference [m]; NaN: the step was discarded
   double allowed_distance = 0;  // bound for the same minimizer, in the mass norm [m sqrt(kg)]; infinite in statics
   double mass_distance = 0;     // distance in the mass norm
   bool same_minimizer = false;
@@ -41,7 +41,7 @@ struct Comparison {
 struct ComparisonOptions {
   std::vector<ComparedMethod> methods;
   int step = 1;
-  double max_seconds = 60;                                    // time limit of one method
+  double max_seconds = 60;                                    // time limit of one method; its status is then `budget`
   std::function<void(const std::string& method)> begun = {};  // called before each method
   StopToken stop = {};                                        // polled in every iteration
 };

@@ -11,6 +11,7 @@
 #include "base/free_memory.h"
 #include "io/atomic_file.h"
 #include "io/foreign_formats.h"
+#include "io/gltf.h"
 #include "io/gltf_reader.h"
 #include "io/gmsh.h"
 #include "io/legacy_vtk.h"
@@ -110,6 +111,17 @@ ReadBeside files_beside(const fs::path& path) {
 
 MeshContent read_gltf(const fs::path& path) { return parse_gltf(path.string(), read_file(path), files_beside(path)); }
 
+void write_glb(const fs::path& path, const TriMesh& mesh, FileEncoding) {
+  GltfMesh gltf{.name = path.stem().string(), .triangles = mesh.triangles, .frames = {{}}};
+  for (const Vec3d& x : mesh.vertices)
+    for (const double coordinate : x.a) {
+      gltf.frames[0].push_back(static_cast<float>(coordinate));
+      if (!std::isfinite(gltf.frames[0].back()))
+        throw InvalidInput(path.string() + ": not written, since a vertex is too far out for single precision");
+    }
+  write_file(path, glb({.meshes = {std::move(gltf)}, .times = {}}));
+}
+
 MeshContent read_vtk_mesh(const fs::path& path) {
   Vtu vtu = read_vtk_or_vtu(path);
   if (!vtu.mesh.tets.empty())
@@ -139,7 +151,7 @@ const std::vector<Format>& formats() {
       {".obj", "Wavefront OBJ", read_text<parse_obj>, nullptr, write_text<TriMesh, obj_text>, false, true},
       {".ply", "PLY, ASCII and binary", read_text<parse_ply>, nullptr, write_bytes<TriMesh, ply_bytes>, false, true},
       {".stl", "STL, ASCII and binary", read_text<parse_stl>, nullptr, write_stl, false, true},
-      {".glb", "glTF 2.0", read_gltf, nullptr, nullptr, false, true},
+      {".glb", "glTF 2.0", read_gltf, nullptr, write_glb, false, true},
       {".gltf", "glTF 2.0", read_gltf, nullptr, nullptr, false, true},
       {".off", "OFF, ASCII", read_text<parse_off>, nullptr, write_text<TriMesh, off_text>, false, true},
   };

@@ -99,7 +99,7 @@ template bool examine_vertices(const std::vector<Vec3d>&, const std::vector<Tet>
 template bool examine_vertices(const std::vector<Vec3d>&, const std::vector<Triangle>&, const std::string&, Findings&);
 
 std::string unit_hint(const Box& box) {
-  constexpr double kLargest = 50, kSmallest = 1e-3, kLargestInCentimeters = 1000;  // [m] usual range of soft bodies
+  constexpr double kLargest = 10, kSmallest = 1e-3, kLargestInCentimeters = 1000;  // [m] usual range of soft bodies
   double extent = 0;
   for (int axis = 0; axis < 3; ++axis) extent = std::max(extent, box.upper[axis] - box.lower[axis]);
   const std::string begin = "extent " + three_digits(extent) + " m; if the file is in ";

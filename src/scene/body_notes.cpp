@@ -16,7 +16,8 @@ constexpr double kFarFromOrigin = 1e8;  // in sizes of the body; half of the 16 
 constexpr double kCrushed = 3;          // rho g H / E: strain at the bottom of a column under its own weight
 constexpr double kDiamond = 1.2e12;     // [Pa]
 constexpr double kSoft = 1e7;           // [Pa] above it few bodies are soft
-constexpr double kLarge = 20;           // [m] above it, lengths were possibly meant in millimeters
+constexpr double kSoftest = 1;          // [Pa] below it no body is a solid
+constexpr double kLarge = 10;           // [m] above it, lengths were possibly meant in millimeters
 
 void note_inverted(const PlacedBody& body, std::vector<std::string>& notes) {
   const TetMesh start{body.start, body.mesh.tets, {}};
@@ -111,6 +112,13 @@ void note_weight(const PlacedBody& body, const Means& mean, const Vec3d& gravity
   notes.push_back(crushed + three_digits(mean.young) + " is in " + unit + ", " + stiffness_remedy(body, mean, factor));
 }
 
+void note_softness(const PlacedBody& body, const Means& mean, std::vector<std::string>& notes) {
+  if (!(mean.young > 0 && mean.young < kSoftest)) return;
+  const std::string young = three_digits(mean.young);
+  notes.push_back("body '" + body.name() + "': " + young + " Pa is softer than any solid (jelly: 5e3 Pa); if " + young +
+                  " is in MPa, " + stiffness_remedy(body, mean, 1e6));
+}
+
 void note_diamond(const PlacedBody& body, const Means& mean, std::vector<std::string>& notes) {
   if (!(mean.young > kDiamond)) return;
   const Box box = bounding_box(body.mesh.rest);
@@ -156,7 +164,8 @@ void note_stiffness(const PlacedBody& body, const BodyMaterial& material, const 
   if (!body.scene["elastic"].boolean() || body.mesh.tets.empty()) return;
   const Means mean = means(body.mesh, material);
   const bool is_held = body.scene.find("pin") || body.scene.find("spring");
-  if (is_held || has_obstacles) note_weight(body, mean, gravity, notes);  // else it falls
+  const bool shows_weight = (is_held || has_obstacles) && dot(gravity, gravity) > 0;  // else it falls or floats
+  shows_weight ? note_weight(body, mean, gravity, notes) : note_softness(body, mean, notes);
   note_diamond(body, mean, notes);
   note_unbounded(body, material, notes);
 }

@@ -184,6 +184,39 @@ void add_mid_edges(const PlacedBody& body, const BodyMaterial& material, Model& 
   for (const AngleRow& row : make_angle_rows(model.mesh.rest, triangles, mass)) model.angle_rows.push_back(row);
 }
 
+std::string direction_text(const Vec3d& n) {
+  std::string text;
+  for (const double component : n.a)
+    text += (text.empty() ? "[" : ", ") + number_text(std::round(1e3 * component) / 1e3 + 0.0);  // no "-0"
+  return text + "]";
+}
+
+struct Surroundings {
+  WindField wind;
+  Vec3d gravity;
+  double duration;  // of the run [s]
+};
+
+// Returns the normal of a flat sheet if neither gravity nor wind, sampled over the run, pushes the sheet along it.
+std::optional<Vec3d> normal_across_wind(const PlacedBody& body, const Surroundings& air) {
+  constexpr double kParallel = 1e-9;  // sine of an angle that only round-off causes
+  const std::vector<Vec3d>& x = body.start;
+  std::optional<Vec3d> normal;
+  double fastest = 0;
+  for (const Triangle& t : body.mesh.sheet) {
+    const Vec3d N = cross(x[t[1]] - x[t[0]], x[t[2]] - x[t[0]]), n = (1 / norm(N)) * N;
+    if (!normal) normal = n;
+    if (!(norm(cross(*normal, n)) < kParallel)) return std::nullopt;
+    for (int k = 0; k < 8; ++k) {
+      const Vec3d u = air.wind((1.0 / 3) * (x[t[0]] + x[t[1]] + x[t[2]]), air.duration * k / 7.3);
+      if (std::abs(dot(u, *normal)) > kParallel * norm(u)) return std::nullopt;
+      fastest = std::max(fastest, norm(u));
+    }
+  }
+  const bool falls = normal && std::abs(dot(air.gravity, *normal)) > kParallel * norm(air.gravity);
+  return fastest > 0 && !falls ? normal : std::nullopt;
+}
+
 }  // namespace
 
 BodyMesh make_sheet_mesh(Value& body, MeshLoader& loader) {
@@ -270,7 +303,8 @@ std::unique_ptr<TetElasticity> sheet_elasticity(const PlacedBody& body, const Bo
   return make_sheet_elasticity(model.mesh, body.first_triangle, sheet);
 }
 
-void add_wind(const Table& document, Model& model) {
+void add_wind(const Table& document, const std::vector<PlacedBody>& bodies, Model& model,
+              std::vector<std::string>& notes) {
   const Value* table = document.find("wind");
   if (!table) return;
   if (model.mesh.sheet.empty())
@@ -292,6 +326,13 @@ void add_wind(const Table& document, Model& model) {
       throw error_at(place, e.what());
     }
   };
+  const Surroundings air{field, document.find("gravity")->vector(), (*document.find("time"))["duration"].number()};
+  for (const PlacedBody& body : bodies)
+    if (const auto normal = normal_across_wind(body, air))
+      notes.push_back("body '" + body.name() +
+                      "': the wind blows exactly in the plane of this flat sheet, so no pressure bends it; tilt "
+                      "wind.velocity, for example by 1 % of its speed along the normal " +
+                      direction_text(*normal));
   auto wind = make_wind(model.mesh.sheet, law, field);
   model.wind = wind.get();
   model.damping.push_back(std::move(wind));

@@ -19,7 +19,9 @@ BodyMesh make_sheet_mesh(Value& body, MeshLoader& loader);
 std::unique_ptr<TetElasticity> sheet_elasticity(const PlacedBody& body, const BodyMaterial& material,
                                                 const std::vector<char>& held, Model& model);
 
-// Adds the drag of `wind`, if the document has one, on all sheets. Throws InvalidInput.
-void add_wind(const Table& document, Model& model);
+// Adds the drag of `wind`, if the document has one, on all sheets, and a note for a flat sheet in whose plane it blows.
+// Throws InvalidInput.
+void add_wind(const Table& document, const std::vector<PlacedBody>& bodies, Model& model,
+              std::vector<std::string>& notes);
 
 }  // namespace aspic

@@ -196,6 +196,14 @@ TEST(SceneRemedies, NameKeysOfMaterial) {
     ASSERT_NE(note, "") << soft;
     EXPECT_EQ(note_with(load(body(soft), assignments(note)), "crushes"), "") << note;
   }
+  for (const char* soft : {"young = 0.06", "shear = 0.04, bulk = 0.08"}) {
+    const auto weightless = [&](const std::vector<std::string>& set = {}) {
+      return note_with(load("gravity = [0, 0, 0]\n" + body(soft), set), "softer than any solid");
+    };
+    const std::string note = weightless();
+    ASSERT_NE(note, "") << soft;
+    EXPECT_EQ(weightless(assignments(note)), "") << note;
+  }
   for (const char* stiff : {"young = 2e14", "shear = 1e14, bulk = 2e14", "lambda = 1e14, mu = 1e14"}) {
     const std::string note = note_with(load(body(stiff)), "diamond");
     ASSERT_NE(note, "") << stiff;

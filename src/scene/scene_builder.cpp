@@ -39,6 +39,14 @@ void append_to(std::vector<T>& all, const std::vector<T>& more) {
   all.insert(all.end(), more.begin(), more.end());
 }
 
+void note_duration(const Value& time, int steps, std::vector<std::string>& notes) {
+  constexpr double kNoticed = 0.01;  // of the duration
+  const double duration = time["duration"].number(), h = time["step"].number();
+  if (steps * h - duration > kNoticed * duration)
+    notes.push_back("time.duration = " + number_text(duration) + " is no multiple of time.step = " + number_text(h) +
+                    ": the last step ends at t = " + number_text(steps * h) + " s");
+}
+
 class SceneBuilder {
  public:
   SceneBuilder(SceneSource source, SceneFiles files, const SceneOptions& options)
@@ -75,6 +83,7 @@ class SceneBuilder {
   Scene build() {
     SceneModel scene = build_model();
     const int steps = steps_of(*scene.document.find("time"));
+    note_duration(*scene.document.find("time"), steps, scene.notes);
     const OutputOptions output = output_options(*scene.document.find("output"));
     const Vec3d gravity = scene.document.find("gravity")->vector();
     const std::string mesh_error = (*scene.document.find("solver"))["mesh_error"].text();
@@ -218,7 +227,7 @@ class SceneBuilder {
     if (!segments.empty()) model_.damping.push_back(make_rod_bending(model_.mesh, segments));
     model_.mass = std::make_unique<MassMatrix>(model_.mesh, model_.density, kind, angle_masses(model_));
     add_loads_and_damping(actions, model_);
-    add_wind(source_.document, model_);
+    add_wind(source_.document, bodies_, model_, warnings_);
     MeshLoader loader = mesh_loader();
     add_scene_contact(source_.document, loader, initial_positions(), model_);
     add_attachments(source_.document, bodies_, model_, source_.notes);
@@ -252,8 +261,8 @@ class SceneBuilder {
       } catch (const InvalidInput& e) {
         throw error_at(body.scene["velocity"].place, e.what());
       }
-      for (size_t i = 0; i < v.size(); ++i)
-        for (int r = 0; r < 3; ++r) state.qdot.push_back(v[i][r]);
+      for (const Vec3d& velocity : v)
+        for (int r = 0; r < 3; ++r) state.qdot.push_back(velocity[r]);
     }
     state.q = initial_positions();
     state.qdot = model_.numbering.vertex.from_user(state.qdot, 3);
@@ -341,11 +350,12 @@ void export_moduli(std::span<const MaterialParameters> parameters, Model& model)
 }
 
 int steps_of(const Value& time) {
+  const double duration = time["duration"].number(), h = time["step"].number();
   // Rounded quotient: 2 / 0.01 must not become 201 steps.
-  const double steps = std::ceil(time["duration"].number() / time["step"].number() - 1e-6);
+  const double steps = std::ceil(duration / h - 1e-6);
   if (steps > 1e9)
-    throw error_at(time["duration"].place, "duration = " + number_text(time["duration"].number()) + " needs " +
-                                               number_text(steps) + " steps; choose a longer step");
+    throw error_at(time["duration"].place, "duration = " + number_text(duration) + " needs " + number_text(steps) +
+                                               " steps; choose a longer step");
   return static_cast<int>(std::max(steps, 0.0));
 }
 

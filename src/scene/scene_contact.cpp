@@ -245,6 +245,15 @@ void note_reaches(const Barrier& contact, MeshLoader& loader) {
                            three_digits(bounded.back().law->reach) + " m, for such reasons");
 }
 
+// Adds a note if thin bodies, which users expect to lie on others, pass through them.
+void note_no_contact(const Model& model, std::vector<std::string>& notes) {
+  const auto thin = std::find_if(model.bodies.begin(), model.bodies.end(),
+                                 [](const BodyRange& body) { return body.is_sheet() || body.is_rod(); });
+  if (thin == model.bodies.end() || model.bodies.size() < 2) return;
+  notes.push_back("contact is off: body '" + thin->name +
+                  "' passes through the other bodies; a line [contact] in the scene switches it on");
+}
+
 bool is_static(const Table& document) {
   return make_integrator((*document.find("time"))["integrator"].text())->facts().is_static();
 }
@@ -253,7 +262,7 @@ bool is_static(const Table& document) {
 
 void add_scene_contact(Table& document, MeshLoader& loader, const std::vector<double>& q, Model& model) {
   Value* obstacles = document.find("obstacle");
-  if (!document.find("contact") && !obstacles) return;
+  if (!document.find("contact") && !obstacles) return note_no_contact(model, loader.notes);
   if (!document.find("contact")) {
     Table defaults;
     defaults.set("friction", {0.0, {}});

@@ -39,7 +39,9 @@ TEST(Scene, CombinesBodiesInOrder) {
 
 TEST(Scene, StepsCoverTheDuration) {
   EXPECT_EQ(load("[time]\nstep = 0.01\nduration = 2\n" + kCube).steps, 200);
-  EXPECT_EQ(load("[time]\nstep = 0.03\nduration = 0.1\n" + kCube).steps, 4);
+  const Scene longer = load("[time]\nstep = 0.03\nduration = 0.1\n" + kCube);
+  EXPECT_EQ(longer.steps, 4);
+  EXPECT_THAT(longer.notes, testing::Contains(HasSubstr("the last step ends at t = 0.12 s")));
   EXPECT_EQ(load("[time]\nduration = 0\n" + kCube).steps, 0);
 }
 

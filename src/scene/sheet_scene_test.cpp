@@ -209,6 +209,36 @@ TEST(SheetScene, WindPushesEquallyInAllIntegrators) {
   }
 }
 
+// The remedy of the note bends the sheet.
+TEST(SheetScene, WindInThePlaneOfAFlatSheetIsNoted) {
+  const auto flag = [](const std::string& velocity) {
+    return load("[wind]\nvelocity = " + velocity + "\n" + kSheet + kShell + "[[body.pin]]\nwhere = \"X < -0.19\"\n");
+  };
+  const auto farthest_out = [](Scene scene) {
+    run_steps(scene, 10);
+    double distance = 0;
+    for (size_t i = 2; i < scene.simulation.state().q.size(); i += 3)
+      distance = std::max(distance, std::abs(scene.simulation.state().q[i]));
+    return distance;
+  };
+  const auto is_noted = testing::Contains(HasSubstr("in the plane of this flat sheet"));
+  EXPECT_THAT(flag("[5, 0, 0]").warnings, testing::Contains(HasSubstr("along the normal [0, 0, 1]")));
+  EXPECT_EQ(farthest_out(flag("[5, 0, 0]")), 0);
+  EXPECT_GT(farthest_out(flag("[5, 0, 0.05]")), 1e-4);
+  for (const char* velocity : {"[5, 0, 0.05]", "[5, 0, \"sin(t)\"]", "[0, 0, 0]"})
+    EXPECT_THAT(flag(velocity).warnings, testing::Not(is_noted)) << velocity;
+}
+
+TEST(SheetScene, ThinBodiesWithoutContactAreNoted) {
+  const std::string second = "[[body]]\nname = \"second\"\nshape = { sphere = { radius = 0.2, size = 0.1 } }\n";
+  const auto is_noted = testing::Contains(HasSubstr("contact is off: body 'cloth' passes through"));
+  EXPECT_THAT(load(kSheet + kShell + second).notes, is_noted);
+  EXPECT_THAT(load(kCube + second).notes, testing::Not(testing::Contains(HasSubstr("contact is off"))));
+  EXPECT_THAT(load(kSheet + kShell).notes, testing::Not(is_noted));
+  EXPECT_THAT(load("[contact]\n" + kSheet + kShell + "translate = [0, 0, 0.5]\n" + second).notes,
+              testing::Not(is_noted));
+}
+
 TEST(SheetScene, ClosedSheetIsHollow) {
   const std::string ball = "[contact]\n[[body]]\nname = \"skin\"\nshape = { sphere = { radius = 0.2, size = 0.1 } }\n" +
                            kShell + "[[body]]\nname = \"core\"\nshape = { sphere = { radius = 0.1, size = 0.1 } }\n";

@@ -129,6 +129,12 @@ std::string count_text(const std::vector<Result>& results) {
   return text;
 }
 
+void write_page(const std::filesystem::path& path, const std::string& mesh, const Result& result) {
+  ReportPage page(result.demonstration->title, mesh);
+  add_result(page, result);
+  page.write(path);
+}
+
 void write_summary(const std::filesystem::path& folder, const std::string& mesh, const std::vector<Result>& results) {
   ReportPage page("From Energy to Motion", "The pages of the lecture, each judged by numbers; " + mesh);
   add_overview(page, results);

@@ -17,6 +17,9 @@ struct Result {
 void print(const Result& result);
 std::string count_text(const std::vector<Result>& results);  // number of passing pages, and pages that cannot be judged
 
+// Writes a page with embedded pictures.
+void write_page(const std::filesystem::path& path, const std::string& mesh, const Result& result);
+
 // Writes index.html with embedded pictures, and lecture.json, for all pages.
 void write_summary(const std::filesystem::path& folder, const std::string& mesh, const std::vector<Result>& results);
 
