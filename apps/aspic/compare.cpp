@@ -185,9 +185,9 @@ void print_table(const Comparison& comparison) {
              "gradients", "Hessians", "time [ms]", "excess of E", "dist. [m]");
   for (const MethodResult& result : comparison.results) {
     const StepReport& report = result.report;
-    fmt::print("{:<{}}  {:<16} {:>10} {:>10} {:>8} {:>10.3g} {:>11.1e} {:>10}\n", result.method, width,
-               reached(result), report.iterations, report.gradients, report.hessians, 1e3 * result.seconds,
-               result.excess, distance(result));
+    fmt::print("{:<{}}  {:<16} {:>10} {:>10} {:>8} {:>10.3g} {:>11.1e} {:>10}\n", result.method, width, reached(result),
+               report.iterations, report.gradients, report.hessians, 1e3 * result.seconds, result.excess,
+               distance(result));
   }
 }
 
