@@ -57,10 +57,10 @@ function italic(letter) {
 export async function mathStyle() {
   const formulas = programFormulas().flatMap(([, list]) => list).join("");
   const italics = [...formulas.matchAll(/<mi>(.)<\/mi>/gu)].map(([, letter]) => String.fromCodePoint(italic(letter)));
-  const file = createRequire(import.meta.url).resolve("@fontsource/noto-sans-math/files/noto-sans-math-latin-400-normal.woff2");
+  const file = createRequire(import.meta.url).resolve("@fontsource/stix-two-math/files/stix-two-math-latin-400-normal.woff2");
   const font = await subsetFont(readFileSync(file), formulas.replace(/<[^>]*>/g, "") + italics.join(""), { targetFormat: "woff2" });
   const source = `url(data:font/woff2;base64,${font.toString("base64")}) format("woff2")`;
-  return `@font-face{font-family:"Noto Sans Math";src:${source}}math{font-family:"Noto Sans Math",math}`;
+  return `@font-face{font-family:"STIX Two Math";src:${source}}math{font-family:"STIX Two Math","Latin Modern Math","Cambria Math",math,serif}`;
 }
 
 // A plugin for esbuild: formulas.json, the materials and the integrators are bundled as MathML by name.

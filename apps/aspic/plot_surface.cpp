@@ -84,7 +84,7 @@ void draw(const std::filesystem::path& path, const ContourMap& map) {
   plot.add(fmt::format("set xrange {}\nset yrange {}", range(f.x.front(), f.x.back()), range(f.y.front(), f.y.back())));
   std::string layers = "plot $contours using 1:2:(rank($3)) with lines lw 1 lc palette notitle";
   constexpr size_t kMarked = 100;  // marks of a path; more would hide it
-  bool has_rejected = false;
+  bool has_rejected = false, has_start = false;
   int next = 1;  // blue is reserved for contours
   for (const PlanarPath& line : map.paths) {
     const std::string ink = color(next);
@@ -98,8 +98,9 @@ void draw(const std::filesystem::path& path, const ContourMap& map) {
     layers += fmt::format(", {} using 1:2 with {} lc rgb {} title {}", plot.data_file(point_table(line.points)),
                           marks + (line.points.size() > kMarked ? " 1" : " 1.6"), ink, label(line.label));
     if (!line.points.empty())  // initial guess
-      layers += fmt::format(", {} using 1:2 with points pt 6 ps 1.1 lw 1.6 lc rgb {} notitle",
-                            plot.data_file(point_table({line.points.front()})), ink);
+      layers += fmt::format(", {} using 1:2 with points pt 6 ps 1.1 lw 1.6 lc rgb {} {}",
+                            plot.data_file(point_table({line.points.front()})), ink,
+                            std::exchange(has_start, true) ? "notitle" : "title 'start'");
   }
   if (map.minimizer)
     layers += fmt::format(", {} using 1:2 with points pt 3 ps 1.2 lw 1.8 lc rgb '#111111' title 'minimum'",

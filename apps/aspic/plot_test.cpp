@@ -164,7 +164,7 @@ TEST_F(Pictures, ContourMapShowsPathAndRejectedTrials) {
   }
   draw(folder / "contours.svg", map);
   const std::string svg = read_file(folder / "contours.svg");
-  for (const char* text : {"gradient descent", "rejected trials", "Newton", "minimum"})
+  for (const char* text : {"gradient descent", "rejected trials", "start", "Newton", "minimum"})
     EXPECT_TRUE(has(svg, text)) << text;
   draw(folder / "contours.png", map);
   EXPECT_EQ(png_size(folder / "contours.png"), std::pair(1240u, 1120u));

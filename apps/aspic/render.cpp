@@ -40,10 +40,17 @@ class PictureCount : public StatusLine {
   PictureCount() : StatusLine(stdout) {}
   void show(int drawn, int count) {
     if (!terminal_ && (count == 1 || seconds() - shown_at_ < kLineInterval)) return;
-    draw(fmt::format("{} of {} pictures", drawn, count));
     shown_at_ = seconds();
+    if (drawn == 1) first_at_ = shown_at_;
+    std::string text = fmt::format("{} of {} pictures", drawn, count);
+    if (drawn > 1)
+      text += fmt::format("  {} left", duration_text((shown_at_ - first_at_) / (drawn - 1) * (count - drawn)));
+    draw(std::move(text));
   }
   void finish() { erase(); }
+
+ private:
+  double first_at_ = 0;  // end of the first picture, which includes the start of the browser [s]
 };
 
 viewer::RenderOptions render_options(const RenderArguments& arguments) {

@@ -115,7 +115,6 @@ export class Lecture {
   private toggle(): void {
     if (this.lessons.length === 0) return;
     this.show(this.root.hidden === true);
-    if (!this.root.hidden) this.search.focus();
   }
 
   private startSlides(): boolean {

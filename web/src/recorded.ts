@@ -116,6 +116,10 @@ export class RecordedSource implements Source {
     return this.opened().head.frames;
   }
 
+  get largestPressure(): number | undefined {
+    return this.recording?.largestPressure;
+  }
+
   // Whether this is a figure of arrays, which has no simulation.
   get isFigure(): boolean {
     return this.opened().isFigure;

@@ -3,6 +3,7 @@
 import { Pack } from "./pack";
 import { nearest } from "./plots/table";
 import type { Geometry, Hello, Obstacle, Scene, StepRow, Vec3 } from "./protocol";
+import { extremes } from "./view/ranges";
 
 export interface RecordingHead {
   format: 1;
@@ -37,6 +38,7 @@ const kLargestCode = 254;
 export class Recording extends Pack<RecordingHead> {
   readonly surfaces: RecordedSurface[];
   readonly pointCount: number;
+  readonly largestPressure: number; // of the contact points in all frames [Pa]
   private readonly rest: Float32Array;
   private readonly codes: Uint16Array; // 3 codes per point and frame
 
@@ -44,6 +46,7 @@ export class Recording extends Pack<RecordingHead> {
     super(bytes);
     if (this.head.format !== 1) throw new Error(`the recording has format ${String(this.head.format)}; this page reads format 1`);
     this.pointCount = this.floats("point.rest").length / 3;
+    this.largestPressure = extremes(this.floats("contact.at").filter((_, i) => i % 4 === 3))?.[1] ?? 0;
     this.rest = this.roundedRest();
     this.codes = unpredicted(this.array("positions") as Uint8Array, 3 * this.pointCount);
     for (const [name, stored] of this.arrays) if (name.startsWith("field.") && stored instanceof Uint8Array) this.add(stored);

@@ -17,6 +17,7 @@ export class Refusal extends Error {
 
 export interface Source {
   readonly live: boolean;
+  readonly largestPressure?: number; // of the contact points in all frames of a recorded run [Pa]
   start(receive: (incoming: Incoming) => void): void;
   send(command: Command): void; // answered by `refused` if the source cannot execute it
   request(command: Command): Promise<unknown>; // resolves on completion, rejects with the reason

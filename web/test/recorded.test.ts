@@ -268,6 +268,7 @@ test("recordings with contact have obstacles and points", async () => {
   assert.ok(sent?.kind === "obstacles");
   assert.deepEqual(sent.obstacles, [kFloor]);
   assert.equal(reader.picture.contacts.length, 0, "nothing touches at the start");
+  assert.equal(reader.source.largestPressure, 70, "one scale for all frames");
   await reader.source.request({ do: "color", field: "contact_pressure" });
   reader.source.ready();
   await reader.source.request({ do: "step" });

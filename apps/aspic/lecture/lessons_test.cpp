@@ -218,6 +218,15 @@ TEST(Lessons, HardStepWithoutLineSearchLeavesTheNumbers) {
   EXPECT_GT(row["iterations"][1]["value"].get<double>(), 1e3 * row["iterations"][0]["value"].get<double>());
 }
 
+TEST(Lessons, HardStepStartsInTheSameDirectionOnBothSides) {
+  Opened opened("53+62_pure_newton");
+  opened.step();
+  const json a = opened.rows("a")[0]["iterations"][0], b = opened.rows("b")[0]["iterations"][0];
+  for (const char* key : {"value", "gradient_norm", "decrement", "projected_elements"})
+    EXPECT_EQ(a[key], b[key]) << key;
+  EXPECT_LT(a["alpha"], b["alpha"]);
+}
+
 class Explosion : public testing::TestWithParam<std::string> {};
 
 TEST_P(Explosion, OccursWithOtherSchemeUnderSameMouse) {

@@ -10,12 +10,17 @@
 #include "aspic/minimize.h"
 #include "optimize/landscape.h"
 #include "optimize/newton.h"
+#include "optimize/solver.h"
 #include "optimize/test_functions.h"
 
 namespace aspic::cli::lecture {
 namespace {
 
-constexpr int kMaxIterations = 60;
+const SolverOptions& solver_of(const OpenStep& step) { return step.scene.simulation.options().solver; }
+
+Newton newton_of(const OpenStep& step) {
+  return Newton(make_linear_solver(solver_of(step).linear), definiteness_of(solver_of(step)));
+}
 
 struct Attempt {
   std::string name;
@@ -26,8 +31,8 @@ struct Attempt {
 
 Attempt attempt(OpenStep& step, DecreaseTest test) {
   Attempt result{test == DecreaseTest::none ? "without line search" : "with line search", {}, {}, {}, {}, step.start};
-  Newton newton(make_linear_solver("cholesky"));
-  MinimizeOptions options{.max_iterations = kMaxIterations};
+  Newton newton = newton_of(step);
+  MinimizeOptions options = solver_of(step).minimize;
   options.line_search.test = test;
   result.report = Minimizer().minimize(step.E, newton, result.q, options, [&](const LiveIteration& iteration) {
     result.value.push_back(iteration.value);
@@ -65,7 +70,7 @@ void show_pure_newton(const Stage& stage, Sheet& sheet) {
   sheet.remark(fmt::format("the same step, start, Hessian and tolerance; without a line search: {}, with one: {}",
                            to_string(pure.report.status), to_string(careful.report.status)));
   sheet.equals("without line search: converged", is_success(pure.report.status), 0, "",
-               fmt::format("it is expected to fail within {} iterations", kMaxIterations));
+               fmt::format("it is expected to fail within {} iterations", solver_of(step).minimize.max_iterations));
   sheet.at_least("without line search: iterations that raise E", rises(pure), 1, "", "it overshoots");
   const double last = pure.report.gradient_norm / pure.report.threshold;
   sheet.at_least("without line search: |gradient| at the end / tolerance", std::isfinite(last) ? last : INFINITY, 1e3,
@@ -75,15 +80,18 @@ void show_pure_newton(const Stage& stage, Sheet& sheet) {
   sheet.equals("with line search: iterations that raise E", rises(careful), 0, "", "each trial must decrease E");
   sheet.at_most("with line search: |gradient| at the end / tolerance",
                 careful.report.gradient_norm / careful.report.threshold, 1, "", "converged");
+  // Without a line search E exceeds 1e180: the axis ends where the curve with one can still be read.
   const auto chart = [&](const std::string& label, Vector Attempt::*y) {
     return Chart{"one step of a real mesh",
                  {"iteration"},
-                 {label, AxisScale::logarithmic},
+                 {label, AxisScale::logarithmic, {}, 1e3 * (careful.*y).front()},
                  {{pure.name, indices((pure.*y).size()), pure.*y, SeriesStyle::line_and_points},
                   {careful.name, indices((careful.*y).size()), careful.*y, SeriesStyle::line_and_points}}};
   };
-  sheet.draw("gradient.svg", "The gradient by iteration", chart("|dE/dq| [kg m]", &Attempt::gradient));
-  sheet.draw("value.svg", "E by iteration", chart("E [kg m^2]", &Attempt::value));
+  sheet.draw("gradient.svg", "The gradient by iteration; without a line search it leaves the axis",
+             chart("|dE/dq| [kg m]", &Attempt::gradient));
+  sheet.draw("value.svg", "E by iteration; without a line search it leaves the axis",
+             chart("E [kg m^2]", &Attempt::value));
   sheet.draw("step.png", "The start of the step, and its end with a line search",
              MeshPicture{.panels = {{"start", surface_at(step.model(), step.start)},
                                     {"end", surface_at(step.model(), careful.q)}},
@@ -144,16 +152,16 @@ Curve curve_through(const LiveIteration& it, double sufficient_decrease) {
 Curve curve_of(OpenStep& step, const LineSearchOptions& search) {
   Curve curve;
   Vector q = step.start;
-  Newton newton(make_linear_solver("cholesky"));
+  Newton newton = newton_of(step);
   bool is_found = false;
-  const StopToken stop([&] { return is_found; });
-  Minimizer().minimize(step.E, newton, q, {.max_iterations = kMaxIterations, .line_search = search, .stop = stop},
-                       [&](const LiveIteration& it) {
-                         const bool is_clear = it.tried.size() == 2 || it.tried.size() == 3;
-                         if (is_clear || (it.tried.size() > 3 && curve.iteration < 0))
-                           curve = curve_through(it, search.sufficient_decrease);
-                         is_found = is_found || is_clear;
-                       });
+  MinimizeOptions options = solver_of(step).minimize;
+  options.line_search = search;
+  options.stop = StopToken([&] { return is_found; });
+  Minimizer().minimize(step.E, newton, q, options, [&](const LiveIteration& it) {
+    const bool is_clear = it.tried.size() == 2 || it.tried.size() == 3;
+    if (is_clear || (it.tried.size() > 3 && curve.iteration < 0)) curve = curve_through(it, search.sufficient_decrease);
+    is_found = is_found || is_clear;
+  });
   return curve;
 }
 

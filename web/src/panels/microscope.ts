@@ -159,10 +159,10 @@ export class MicroscopePanel implements Panel {
     return { ...seen.reply, test: typeof test === "string" ? test : "textbook", about };
   }
 
-  // Shows as many charts as fit.
+  // Shows as many charts as fit, on a slide two beside each other.
   private arrange(): void {
     const font = Number.parseFloat(getComputedStyle(this.grid).fontSize) || 14;
-    const across = Math.max(1, Math.min(3, Math.floor(this.grid.clientWidth / (14.5 * font))));
+    const across = Math.max(1, Math.min(this.grid.closest(".slides") ? 2 : 3, Math.floor(this.grid.clientWidth / (14.5 * font))));
     const down = Math.max(1, Math.min(2, Math.floor(this.grid.clientHeight / (11 * font))));
     this.grid.style.gridTemplate = `repeat(${down}, minmax(0, 1fr)) / repeat(${across}, minmax(0, 1fr))`;
     const count = across * down;

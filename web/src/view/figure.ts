@@ -151,8 +151,9 @@ export class Figure {
     return { positions: current, triangles: geometry.triangles, clip: this.display.clip(this.side.scene) };
   }
 
+  // The last color has one pressure throughout a recorded run, so that its pictures can be compared.
   private largestPressure(): number {
-    return this.pressures.get()?.high ?? 0;
+    return this.store.source.largestPressure ?? this.pressures.get()?.high ?? 0;
   }
 
   // Values of the colors at the vertices.

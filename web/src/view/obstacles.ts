@@ -25,6 +25,7 @@ class Ground extends THREE.Mesh {
     gridOrigin: { value: new THREE.Vector2() },
     gridColor: { value: new THREE.Color() },
     gridLines: { value: true },
+    shadowBlur: { value: 1 },
   };
 
   constructor(
@@ -48,6 +49,11 @@ class Ground extends THREE.Mesh {
     this.position.copy(unit.toUnits(foot));
     this.uniforms.gridStep.value = unit.gridStep / unit.radius;
     this.uniforms.gridOrigin.value.set(-dot(this.axes[0], foot) / unit.radius, -dot(this.axes[1], foot) / unit.radius);
+  }
+
+  // Multiplies the blur of shadows on the ground.
+  blur(factor: number): void {
+    this.uniforms.shadowBlur.value = factor;
   }
 
   // Without lines: a faint disk.
@@ -98,6 +104,10 @@ export class ObstacleBodies extends THREE.Group {
 
   follow(point: Vec3, unit: Units): void {
     for (const ground of this.grounds) ground.follow(point, unit);
+  }
+
+  blurShadows(factor: number): void {
+    for (const ground of this.grounds) ground.blur(factor);
   }
 
   colorGround(color: string, lines: boolean): void {

@@ -112,13 +112,14 @@ export function makeGroundMaterial(uniforms: Uniforms): THREE.ShadowMaterial {
   };
   const fragment = {
     "#include <common>": `#include <common>\n${kGroundPars}`,
+    "#include <shadowmask_pars_fragment>": THREE.ShaderChunk.shadowmask_pars_fragment.replace("directionalLight.shadowRadius", "shadowBlur * $&"),
     "gl_FragColor = vec4( color, opacity * ( 1.0 - getShadowMask() ) );": kGroundColor,
   };
   return extend(material, uniforms, vertex, fragment);
 }
 
 const kGroundPars = /* glsl */ `
-  uniform float gridStep;
+  uniform float gridStep, shadowBlur;
   uniform bool gridLines;
   uniform vec2 gridOrigin;
   uniform vec3 gridColor;

@@ -16,8 +16,9 @@ import { kGroundRadius } from "./shading";
 import type { ToolShape } from "./viewTool";
 
 const kFarthest = 1e4; // limit for a body that bursts; beyond it depths lose their digits
-const kLampWidth = 0.04; // 1 - cosine of half the angle of the lamp of soft light
+const kLampWidth = 0.02; // 1 - cosine of half the angle of the lamp of soft light
 const kLowestSky = 0.35; // sine of the lowest direction of soft light
+const kSoftBlur = 5; // of shadows on the ground in soft light, which joins those of different directions
 const kSoftSky = 0.8; // intensity of light without shadows in soft light
 const kFar = 30; // far plane in radii of the scene, and in heights of the view
 
@@ -80,6 +81,7 @@ export class Stage {
     const part = (i + 0.5) / count;
     this.aim(this.sun, around(this.sun.userData.from as THREE.Vector3, i, 1 - kLampWidth * part));
     this.aim(this.dome, around(upward, i, 1 - (1 - kLowestSky) * part));
+    this.obstacles.blurShadows(kSoftBlur);
     this.dome.visible = true;
     this.sky.intensity = kSoftSky;
     this.renderer.shadowMap.needsUpdate = true;

@@ -95,6 +95,13 @@ test("slides fill the screen and are turned by keys", async () => {
   await answered(opened, "a page about a function", isLesson, () => page.evaluate(() => void (location.hash = "#lecture/38/2")));
   await page.locator("#views").waitFor({ state: "hidden" });
   await page.waitForFunction(() => document.querySelector(".functions-form ~ .functions-side .chart") && document.querySelector(".surface canvas").clientHeight > innerHeight / 3);
+  await answered(opened, "a page about the minimization", isLesson, () => page.evaluate(() => void (location.hash = "#lecture/53")));
+  await page.keyboard.press("s");
+  await page.waitForFunction(() => {
+    const charts = [...document.querySelectorAll(".microscope .u-over")];
+    return charts.length === 2 && charts.every(({ clientHeight }) => clientHeight > 100);
+  });
+  await keepPicture(page, "slides_microscope");
   await page.keyboard.press("Escape");
   await page.locator("#views").waitFor();
   await page.locator("#toolbar .timeline").waitFor();

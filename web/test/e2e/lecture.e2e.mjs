@@ -38,7 +38,7 @@ test("each lecture page opens scene and panel", async () => {
     if (i % 6 === 1) await keepPicture(page, `lecture_${lesson.id}`);
   }
   assert.ok(lessons.some(({ log }) => log), "pages about explosions");
-  assert.equal(await page.evaluate(async () => (await document.fonts.load("16px 'Noto Sans Math'", "\u{1d44e}")).length), 1, "the font of formulas");
+  assert.equal(await page.evaluate(async () => (await document.fonts.load("16px 'STIX Two Math'", "\u{1d44e}")).length), 1, "the font of formulas");
   await close();
 });
 
@@ -83,6 +83,7 @@ test("the lecture is searched and paged", async () => {
   const opened = await openSession(program);
   const { page, heard, until, close } = opened;
   await openList(opened);
+  assert.ok(!(await page.getByLabel("Search the lecture").evaluate((field) => field === document.activeElement)), "keys stay shortcuts");
   await page.getByLabel("Search the lecture").fill("newton");
   const all = heard.messages.find(({ kind }) => kind === "hello").lessons.length;
   await until("fewer pages", async () => {
