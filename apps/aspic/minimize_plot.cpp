@@ -92,7 +92,8 @@ void draw_paths(const std::filesystem::path& path, const std::string& title, con
                  .paths = {},
                  .minimizer = problem.minimizer};
   for (const Minimization& done : methods) {
-    PlanarPath line{.label = fmt::format("{}, {} iterations", name_in_picture(done), done.report.iterations),
+    const char* end = is_success(done.report.status) ? "" : ", not converged";
+    PlanarPath line{.label = fmt::format("{}, {} iterations{}", name_in_picture(done), done.report.iterations, end),
                     .points = {problem.start}};
     for (const IterationRecord& record : done.iterations) {
       line.points.push_back(record.next);
