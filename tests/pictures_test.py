@@ -94,6 +94,22 @@ class Pictures(CommandLine):
         for options in (["--view", "1.5,0.8,1"], ["--color", "displacement"], ["--dark"]):
             self.assertNotEqual(differs(colors(self.picture("--preset", "plain", *options)), stored), "", options)
 
+    def test_a_box_does_not_shine_through_the_sheet_above_it(self):
+        self.write("covered.toml", '''[time]
+step = 0.01
+duration = 0.01
+[[body]]
+shape = { rectangle = { width = 1.0, height = 1.0, size = 0.1 } }
+rotate = { axis = [1, 0, 0], angle_deg = -90 }
+translate = [0, 0.003, 0]
+shell = { thickness = 1e-3 }
+[[obstacle]]
+shape = { box = { lower = [-0.2, -0.02, -0.2], upper = [0.2, 0, 0.2], cells = [1, 1, 1] } }
+''')
+        self.aspic("run", "covered.toml", "--out", "run", "--force")
+        found = colors(self.picture("--preset", "plain", "--view", "1,0.3,0.2"))
+        self.assertFalse([c for c in zip(found[::3], found[1::3], found[2::3]) if 40 < c[0] and c[0] > 1.05 * c[2]])  # beige
+
 
 if __name__ == "__main__":
     unittest.main()

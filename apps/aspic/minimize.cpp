@@ -277,7 +277,7 @@ void add_minimize(CLI::App& app, Action& action) {
   command->footer(R"(
 Examples:
   aspic minimize rosenbrock
-  aspic minimize rosenbrock --method gradient_descent,newton --max-iterations 20000 --plot zigzag.svg
+  aspic minimize quadratic --method gradient_descent,newton --max-iterations 1000 --plot zigzag.svg
   aspic minimize rosenbrock --test none                 Newton's method overshoots
   aspic minimize rosenbrock --plot-model model.png --iteration 1
   aspic minimize --expression "cosh(x) + (y - x)^2" --start 2,-1

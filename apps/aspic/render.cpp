@@ -214,7 +214,7 @@ Chromium draws them with the page of aspic view and aspic report, on the CPU if 
   command->add_flag("--wires,!--no-wires", arguments->wires, "Draw edges of the mesh, on without a preset");
   command->add_flag("--thickness", arguments->thickness, "Draw sheets with their thickness");
   command->add_flag("--dark", arguments->dark, "Use a dark background");
-  command->add_flag("--transparent", arguments->transparent, "Use no background");
+  command->add_flag("--transparent", arguments->transparent, "Use no background and no floor");
   command
       ->add_option("--samples", arguments->samples,
                    "Directions of light per picture, 32 for one picture, 8 for more by default; 1: sharp shadows")

@@ -65,6 +65,7 @@ export class Lecture {
   private readonly card = element("article", { class: "lesson", "aria-live": "polite" });
   private readonly judge = new Judge();
   private readonly exercise: ExercisePanel;
+  private readonly loading = element("p", { class: "faint", role: "status" }, "Loading the demonstration ...");
   private readonly replay = element("p", { class: "replay", hidden: true });
   private readonly list = element("ol", { class: "lessons" });
   private readonly search = element("input", { type: "search", placeholder: "Search", "aria-label": "Search the lecture" });
@@ -120,7 +121,10 @@ export class Lecture {
   private startSlides(): boolean {
     if (this.lessons.length === 0) return false;
     this.show(true);
-    if (!this.current) this.move(1);
+    if (this.current) return true;
+    const wished = lessonAt(this.lessons, location.hash); // it may still be loading
+    if (wished) void this.open(wished);
+    else this.move(1);
     return true;
   }
 
@@ -158,15 +162,33 @@ export class Lecture {
     else this.page.notice(by === 1 ? "This is the last page." : "This is the first page.");
   }
 
+  // The text appears at once, the demonstration when its scene is loaded.
   private async open(lesson: Lesson): Promise<void> {
+    const before = this.current;
+    this.current = lesson;
+    this.write(lesson);
+    this.card.append(this.loading);
     try {
       await this.store.source.request({ do: "lesson", lesson: lesson.id });
     } catch (reason) {
+      if (this.current === lesson) {
+        this.current = before;
+        if (before) this.write(before);
+        else this.card.replaceChildren();
+      }
       return this.page.report(reason);
     }
+    if (this.current !== lesson) return; // turned meanwhile
+    this.loading.remove();
     this.page.emit("cleared", undefined);
-    this.current = lesson;
     history.replaceState(null, "", new URL(addressOf(this.lessons, lesson), location.href)); // for links and reloads
+    this.page.emit("lesson", undefined);
+    this.page.emit("panel", lesson.panel);
+    this.page.emit("scale", lesson.log ? "log" : "linear");
+    if (lesson.function) this.showFunction(lesson.function);
+  }
+
+  private write(lesson: Lesson): void {
     this.replay.hidden = !this.replaying; // the recorded mouse of an earlier lesson
     this.card.replaceChildren(
       element("h2", {}, `${pagesText(lesson)}: ${lesson.title}`),
@@ -183,10 +205,6 @@ export class Lecture {
     this.list.querySelector("[aria-current]")?.scrollIntoView({ block: "nearest" });
     this.root.scrollTo(0, 0);
     document.scrollingElement?.scrollTo(0, 0); // on a phone the whole page scrolls; show the view first
-    this.page.emit("lesson", undefined);
-    this.page.emit("panel", lesson.panel);
-    this.page.emit("scale", lesson.log ? "log" : "linear");
-    if (lesson.function) this.showFunction(lesson.function);
   }
 
   private showReplay(replaying: boolean, playing: boolean): void {

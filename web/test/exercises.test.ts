@@ -54,9 +54,10 @@ test("the line of an error is that of the reader's code", () => {
 
 test("progress survives without storage and is exported", () => {
   const [first, second] = exercises;
-  assert.deepEqual(progressOf(first!), { passed: false, tries: 0, code: first!.code });
-  keepProgress(first!, { passed: true, tries: 2, code: "x" });
-  assert.deepEqual(progressOf(first!), { passed: true, tries: 2, code: "x" });
-  keepProgress(second!, { passed: false, tries: 0, code: "y" });
-  assert.deepEqual(JSON.parse(progressFile("A B", exercises)), { aspic_exercises: 1, exercises: [{ name: "A B", exercise: first!.id, passed: true, tries: 2, code: "x" }] });
+  const none = { passing: "", tries: 0, hints: 0, solution: false };
+  assert.deepEqual(progressOf(first!), { ...none, code: first!.code });
+  keepProgress(first!, { ...none, passing: "right", tries: 2, hints: 1, code: "wrong" });
+  assert.deepEqual(progressOf(first!), { ...none, passing: "right", tries: 2, hints: 1, code: "wrong" });
+  keepProgress(second!, { ...none, code: "y" });
+  assert.deepEqual(JSON.parse(progressFile("A B", exercises)), { aspic_exercises: 1, exercises: [{ name: "A B", exercise: first!.id, tries: 2, hints: 1, solution: false, passed: true, code: "right" }] });
 });

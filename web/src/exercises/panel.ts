@@ -25,7 +25,7 @@ export class ExercisePanel {
   private readonly solution = element("pre", { class: "solution", hidden: true });
   private readonly name = element("input", { type: "text", autocomplete: "name", "aria-label": "Your name", placeholder: "Your name" });
   private exercise: Exercise | null = null;
-  private progress: Progress = { passed: false, tries: 0, code: "" };
+  private progress: Progress = { passing: "", tries: 0, hints: 0, solution: false, code: "" };
 
   constructor(private readonly store: Store) {
     this.checker.classList.add("primary");
@@ -48,14 +48,14 @@ export class ExercisePanel {
     this.editor.show(this.progress.code);
     this.hints.replaceChildren();
     this.solution.hidden = true;
-    this.report({ passed: this.progress.passed, text: "" });
+    this.report({ passed: this.progress.passing !== "", text: "" });
     this.refresh();
   }
 
   private refresh(): void {
     const { title, hints } = this.exercise!;
     const left = hints.length - this.hints.childElementCount;
-    this.summary.textContent = `Exercise: ${title}${this.progress.passed ? " ✓" : ""}`;
+    this.summary.textContent = `Exercise: ${title}${this.progress.passing ? " ✓" : ""}`;
     this.hinter.textContent = `Hint (${left} left)`;
     this.hinter.disabled = left === 0;
     this.solver.hidden = this.progress.tries < kTriesBeforeSolution || !this.solution.hidden;
@@ -89,7 +89,7 @@ export class ExercisePanel {
       const cases = await exercise.cases(this.store);
       const verdict = await check(code, exercise.entry, cases);
       const before = progressOf(exercise); // with what was written meanwhile
-      keepProgress(exercise, { ...before, passed: before.passed || verdict.passed, tries: before.tries + (verdict.isTry ? 1 : 0) });
+      keepProgress(exercise, { ...before, passing: verdict.passed ? code : before.passing, tries: before.tries + (verdict.isTry ? 1 : 0) });
       return verdict;
     } catch (reason) {
       return { passed: false, text: casesError(reason) };
@@ -98,12 +98,14 @@ export class ExercisePanel {
 
   private hint(): void {
     this.hints.append(element("li", {}, this.exercise!.hints[this.hints.childElementCount]!));
+    this.keep({ hints: Math.max(this.progress.hints, this.hints.childElementCount) });
     this.refresh();
   }
 
   private solve(): void {
     this.solution.textContent = this.exercise!.solution;
     this.solution.hidden = false;
+    this.keep({ solution: true });
     this.refresh();
   }
 
@@ -113,7 +115,12 @@ export class ExercisePanel {
   }
 
   private save(): void {
-    const text = progressFile(this.name.value, exercises);
-    saveFile(fileName(`exercises_${this.name.value}`, "json"), new Blob([text], { type: "application/json" }));
+    const name = this.name.value.trim();
+    if (name === "") {
+      this.name.focus();
+      return this.report({ passed: false, text: "Write your name first: the file is for your lecturer." });
+    }
+    const text = progressFile(name, exercises);
+    saveFile(fileName(`exercises_${name}`, "json"), new Blob([text], { type: "application/json" }));
   }
 }

@@ -4,9 +4,11 @@ import { recall, remember } from "../storage";
 import type { Exercise } from "./exercises";
 
 export interface Progress {
-  passed: boolean;
+  passing: string; // the last code that passed; "": none
   tries: number;
-  code: string;
+  hints: number; // shown
+  solution: boolean; // was shown
+  code: string; // as it is
 }
 
 const kept = new Map<string, string>();
@@ -21,9 +23,12 @@ const parsed = (text: string): unknown => {
 
 export function progressOf({ id, code }: Exercise): Progress {
   const saved = fieldsOf(parsed(kept.get(id) ?? recall(`exercise.${id}`) ?? ""));
+  const number = (value: unknown): number => (typeof value === "number" ? value : 0);
   return {
-    passed: saved.passed === true,
-    tries: typeof saved.tries === "number" ? saved.tries : 0,
+    passing: typeof saved.passing === "string" ? saved.passing : "",
+    tries: number(saved.tries),
+    hints: number(saved.hints),
+    solution: saved.solution === true,
     code: typeof saved.code === "string" ? saved.code : code,
   };
 }
@@ -33,8 +38,11 @@ export function keepProgress({ id }: Exercise, progress: Progress): void {
   remember(`exercise.${id}`, kept.get(id)!);
 }
 
-// File for a lecturer: one object per exercise that the reader has tried.
+// File for a lecturer: one object per exercise that the reader has tried, with the code that passed or else the last one.
 export function progressFile(name: string, exercises: Exercise[]): string {
-  const tried = exercises.map((exercise) => ({ name, exercise: exercise.id, ...progressOf(exercise) })).filter(({ tries }) => tries > 0);
+  const tried = exercises
+    .map((exercise) => ({ exercise: exercise.id, ...progressOf(exercise) }))
+    .filter(({ tries }) => tries > 0)
+    .map(({ passing, code, ...rest }) => ({ name, ...rest, passed: passing !== "", code: passing || code }));
   return JSON.stringify({ aspic_exercises: 1, exercises: tried }, null, 2);
 }

@@ -153,7 +153,7 @@ export class Body {
 
   apply(settings: DisplaySettings): void {
     this.mesh.visible = settings.fill;
-    this.wires.visible = settings.wires || !settings.fill;
+    this.surface.polygonOffset = this.wires.visible = settings.wires || !settings.fill;
     this.pins.visible = settings.pins;
     this.fibres.visible = settings.fibres;
     this.surface.color.set(settings.bodyColor);

@@ -4,7 +4,7 @@ import type { Obstacle, Vec3 } from "../protocol";
 import { sceneAxes } from "./cameras";
 import { disposeOf } from "./dispose";
 import { dot, minus } from "./lens";
-import { kGroundRadius, makeGroundMaterial } from "./shading";
+import { kGroundRadius, kSurface, makeGroundMaterial } from "./shading";
 
 export const kAfterObstacles = -2; // order of what obstacles cover although bodies do not, which are drawn later
 
@@ -71,7 +71,7 @@ export interface Units {
 
 export class ObstacleBodies extends THREE.Group {
   private readonly surfaces = new THREE.Group(); // [m]
-  readonly material = new THREE.MeshPhongMaterial({ side: THREE.DoubleSide, clipShadows: true });
+  readonly material = new THREE.MeshPhongMaterial(kSurface);
   private grounds: Ground[] = [];
 
   constructor() {
@@ -110,7 +110,10 @@ export class ObstacleBodies extends THREE.Group {
     for (const ground of this.grounds) ground.blur(factor);
   }
 
-  colorGround(color: string, lines: boolean): void {
-    for (const ground of this.grounds) ground.color(color, lines);
+  showGround(visible: boolean, color: string, lines: boolean): void {
+    for (const ground of this.grounds) {
+      ground.visible = visible;
+      ground.color(color, lines);
+    }
   }
 }

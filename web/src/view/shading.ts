@@ -60,11 +60,17 @@ const kSkin = /* glsl */ `
   }
 `;
 
+// If polygonOffset is on, surfaces lie behind the wires. The offset grows with the size of a pixel and exceeds gaps between
+// bodies in small pictures, so all surfaces have it, and none without wires.
+export const kSurface: THREE.MeshPhongMaterialParameters = {
+  side: THREE.DoubleSide,
+  clipShadows: true,
+  polygonOffsetFactor: 1,
+  polygonOffsetUnits: 2,
+};
+
 export function makeSurfaceMaterial(uniforms: FieldUniforms): THREE.MeshPhongMaterial {
-  const material = new THREE.MeshPhongMaterial({ side: THREE.DoubleSide, clipShadows: true });
-  material.polygonOffset = true; // keeps it behind the wires
-  material.polygonOffsetFactor = 1;
-  material.polygonOffsetUnits = 2;
+  const material = new THREE.MeshPhongMaterial(kSurface);
   const vertex = {
     "#include <common>": "#include <common>\nattribute float fieldValue, isSheet;\nvarying float vFieldValue, vIsSheet;",
     "#include <begin_vertex>": "#include <begin_vertex>\nvFieldValue = fieldValue;\nvIsSheet = isSheet;",

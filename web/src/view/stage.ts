@@ -129,7 +129,8 @@ export class Stage {
     this.scene.background = settings.transparent ? null : new THREE.Color(colors.background);
     this.obstacles.visible = settings.obstacles;
     this.obstacles.material.color.set(settings.obstacleColor);
-    this.obstacles.colorGround(colors.grid, settings.grid);
+    this.obstacles.material.polygonOffset = settings.wires || !settings.fill;
+    this.obstacles.showGround(!settings.transparent, colors.grid, settings.grid);
     this.contacts.visible = settings.contacts;
     this.sun.castShadow = this.dome.castShadow = settings.shadows;
     this.renderer.shadowMap.needsUpdate = true;

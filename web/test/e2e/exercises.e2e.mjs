@@ -74,7 +74,7 @@ test("wrong code is explained, and hints and a solution help", async () => {
   const file = await downloaded(page, () => page.getByRole("button", { name: "Save my results" }).click());
   assert.equal(file.suggestedFilename(), "exercises_Ada_Lovelace.json");
   const saved = JSON.parse(readFileSync(await file.path(), "utf8")).exercises;
-  assert.deepEqual(saved, [{ name: "Ada Lovelace", exercise: "line_search", passed: false, tries: 4, code: exercise.code }]);
+  assert.deepEqual(saved, [{ name: "Ada Lovelace", exercise: "line_search", tries: 4, hints: 1, solution: true, passed: false, code: exercise.code }]);
   await opened.close();
 });
 
@@ -92,7 +92,12 @@ test("slides fill the screen and are turned by keys", async () => {
     await page.waitForFunction(([text, other]) => (document.querySelector("#left .lesson h2").textContent !== text) === other, [first, changes]);
   }
   await keepPicture(page, "slides");
-  await answered(opened, "a page about a function", isLesson, () => page.evaluate(() => void (location.hash = "#lecture/38/2")));
+  await answered(opened, "a page about a function", isLesson, () =>
+    page.evaluate(() => {
+      addEventListener("hashchange", () => setTimeout(() => (window.shownAtOnce = document.querySelector("#left .lesson h2").textContent)), { once: true });
+      location.hash = "#lecture/38/2";
+    }));
+  assert.match(await page.evaluate(() => window.shownAtOnce), /38-42/); // before its scene is loaded
   await page.locator("#views").waitFor({ state: "hidden" });
   await page.waitForFunction(() => document.querySelector(".functions-form ~ .functions-side .chart") && document.querySelector(".surface canvas").clientHeight > innerHeight / 3);
   await answered(opened, "a page about the minimization", isLesson, () => page.evaluate(() => void (location.hash = "#lecture/53")));
