@@ -23,6 +23,7 @@ class StVenantKirchhoff(Body):
 
 body, d = StVenantKirchhoff(X, tets), np.sin(np.arange(q.size)).reshape(q.shape)
 slope, errors = (body.gradient(q) * d).sum(), []
+print(f"V = {body.V(q):.3f} J")
 for h in (1e-4, 1e-5, 1e-6):
     errors.append(abs((body.V(q + h * d) - body.V(q - h * d)) / (2 * h * slope) - 1))
     print(f"h = {h:.0e}: dV/dq and the difference of V differ by {errors[-1]:.1e}")  # falls like h^2 if dV/dq is right
