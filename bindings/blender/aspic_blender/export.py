@@ -5,7 +5,7 @@ import re
 
 import numpy as np
 
-from . import files, sample
+from . import files, messages, sample
 
 JOB = "bake.json"
 
@@ -129,14 +129,18 @@ def write(context):
         text += obstacle_text(name, each, folder, preroll, fps)
     with open(os.path.join(folder, "scene.toml"), "w", encoding="utf-8") as file:
         file.write(text)
-    write_job(folder, scene, named[:len(bodies)], preroll)
+    write_job(folder, scene, named, preroll)
     return folder
 
 
-def write_job(folder, scene, bodies, preroll):
+def write_job(folder, scene, named, preroll):
     """What is needed to read the results later, even in another session."""
     job = {"frame_start": scene.frame_start, "frames": scene.frame_end - scene.frame_start + 1, "preroll": preroll,
-           "substeps": scene.aspic.substeps, "unit": scene.unit_settings.scale_length, "bodies": []}
+           "substeps": scene.aspic.substeps, "unit": scene.unit_settings.scale_length, "bodies": [],
+           "objects": {name: each.ob.name for name, each in named}}
+    bodies = [(name, each) for name, each in named if each.ob.aspic.role in sample.SIMULATED]
+    large = [messages.large(each.ob, each.size(), job["unit"]) for _, each in bodies]
+    job["warnings"] = [text for text in large if text]
     for name, each in bodies:
         np.save(os.path.join(folder, name + ".matrices.npy"), each.matrices)
         job["bodies"].append({"object": each.ob.name, "name": name, "vertices": len(each.rest),

@@ -6,7 +6,7 @@ import time
 import bpy
 from bpy.app.handlers import persistent
 
-from . import export, process, results, sample, settings
+from . import export, messages, process, results, sample, settings
 
 active = None  # the simulation that runs
 
@@ -46,11 +46,13 @@ def outcome(run):
     except (sample.Refused, OSError) as error:
         return "ERROR", str(error)
     text = f"{frames} frames"
+    count, lines = messages.note_lines(run.lines(), export.read_job(run.folder))
+    warnings = f", {count} warning{'s' if count > 1 else ''}:\n" + "\n".join(lines) if count else ""
     if code == process.INTERRUPTED:
-        return "WARNING", f"Stopped after {text}; Continue resumes"
+        return "WARNING", f"Stopped after {text}; Continue resumes{warnings}"
     if code == process.NOT_CONVERGED:
-        return "WARNING", f"{text}; some steps did not converge, see the report"
-    return "INFO", f"Baked {text}"
+        return "WARNING", f"{text}; some steps did not converge, see the report{warnings}"
+    return "WARNING" if count else "INFO", f"Baked {text}{warnings}"
 
 
 def show_frames(run):
@@ -94,6 +96,8 @@ def launch(operator, context, folder, arguments):
         operator.report({"ERROR"}, str(error))
         return {"CANCELLED"}
     if not bpy.app.background:
+        for text in export.read_job(folder).get("warnings", []):
+            operator.report({"WARNING"}, text)
         bpy.app.timers.register(poll, first_interval=0.2)
         return {"FINISHED"}
     kind, text = outcome(active)

@@ -48,9 +48,13 @@ class Run:
         self.thread.join()
         return self.process.returncode
 
-    def message(self):
-        """The last lines of the program's messages."""
+    def lines(self):
+        """Messages of the program."""
         with open(self.log, encoding="utf-8", errors="replace") as file:
-            lines = [line.strip() for line in file if line.strip()]
+            return [line.strip() for line in file if line.strip()]
+
+    def message(self):
+        """The last errors, or lines."""
+        lines = self.lines()
         errors = [line for line in lines if line.startswith(("error", "aspic:"))]
         return "\n".join((errors or lines)[-3:])

@@ -113,9 +113,13 @@ class Sampled:
 
     def finish(self):
         self.frames, self.matrices = np.array(self.frames), np.array(self.matrices)
-        size = np.ptp(self.rest, axis=0).max()
+        size = self.size()
         self.is_moving = bool(np.abs(self.frames - self.frames[0]).max() > 1e-6 * size)
         self.is_posed = bool(np.abs(self.frames[0] - self.rest).max() > 1e-6 * size)
+
+    def size(self):
+        """Largest side of the bounding box [m]."""
+        return float(np.ptp(self.rest, axis=0).max())
 
     def median_edge(self):
         a, b, c = (self.rest[self.triangles[:, i]] for i in range(3))

@@ -571,6 +571,28 @@ def mistakes_are_explained():
 
 
 @scenario
+def notes_are_warnings():
+    ob = ball(name="My ball", young=5)
+    ob.aspic.pin_group = paint(ob, "pin", lambda x: float(x.z > 0.05))
+    bake(2)
+    lines = bpy.context.scene.aspic.status.splitlines()
+    check(len(lines) == 2 and lines[0] == "Baked 2 frames, 1 warning:", lines)
+    check(lines[1].startswith("My ball: its weight crushes it"), lines)
+
+
+@scenario
+def large_objects_are_warned_of():
+    ob = ball(at=(0, 0, 0))
+    for unit, scale, expected in ((1, 100, "Ball is 20 m large;"), (0.1, 1000, "Ball is 20 m large, Unit Scale is 0.1;"),
+                                  (0.01, 100, "Baked 2 frames")):
+        bpy.context.scene.unit_settings.scale_length = unit
+        ob.scale = (scale, scale, scale)
+        bake(2)
+        status = bpy.context.scene.aspic.status
+        check(status.splitlines()[-1].startswith(expected), status)
+
+
+@scenario
 def addon_can_be_disabled_and_enabled():
     ob = ball()
     folder = bake(3)
