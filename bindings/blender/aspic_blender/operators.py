@@ -40,7 +40,9 @@ def outcome(run):
     """Applies the results of a run that has ended. Returns kind of report and text."""
     code = run.wait()
     if code not in (process.DONE, process.NOT_CONVERGED, process.INTERRUPTED):
-        return "ERROR", run.message() or f"aspic ended with code {code}"
+        with open(os.path.join(run.folder, "scene.toml"), encoding="utf-8") as scene:
+            text = messages.error_text(run.message(), scene.read(), export.read_job(run.folder).get("objects", {}))
+        return "ERROR", text or f"aspic ended with code {code}"
     try:
         frames = results.apply(run.folder)
     except (sample.Refused, OSError) as error:

@@ -15,7 +15,7 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
 import aspic_blender  # noqa: E402
-from aspic_blender import export, files, operators, process, results, sample  # noqa: E402
+from aspic_blender import export, files, messages, operators, process, results, sample  # noqa: E402
 
 SCENARIOS = []
 SINGLE = 1e-6  # of the size of the scene: round-off of caches
@@ -567,7 +567,26 @@ def mistakes_are_explained():
     bpy.ops.mesh.primitive_plane_add(size=0.2)
     bpy.context.object.aspic.role = "BODY"
     text = refused(bpy.ops.aspic.bake)
-    check("Plane" in text and "scene.toml" in text, text)
+    check(text == "Error: Plane: the mesh is planar; role Cloth, or apply a Solidify modifier\n", text)
+
+
+@scenario
+def errors_have_words_of_blender():
+    ob = ball(name="Open.001")
+    x, faces = [tuple(v.co) for v in ob.data.vertices], [tuple(f.vertices) for f in ob.data.polygons]
+    ob.data.clear_geometry()
+    ob.data.from_pydata(x, [], faces[1:])
+    text = refused(bpy.ops.aspic.bake)
+    check(text.startswith("Error: Open.001: the surface is open (1 hole); Mesh > Clean Up > Fill Holes"), text)
+    ob.data.clear_geometry()
+    ob.data.from_pydata(x + [(v[0] + 0.1, v[1], v[2]) for v in x], [],
+                        faces + [tuple(v + len(x) for v in f) for f in faces])
+    text = refused(bpy.ops.aspic.bake)
+    check(text.startswith("Error: Open.001: the surface intersects itself (") and "Remesh" in text, text)
+    scene = '[time]\nstep = 1\n[body]\nname = "Open_001"\nfriction = 2\n'
+    for place, expected in (("5:1", "Open.001: a value"), ("2:1", "a value")):
+        text = messages.error_text(f"error: C:\\my files\\scene.toml:{place}: a value", scene, {"Open_001": "Open.001"})
+        check(text == expected, text)
 
 
 @scenario
