@@ -7,10 +7,11 @@ COMMON = re.compile(  # notes about choices that need no change
 
 WORDS = [(re.compile(pattern), words) for pattern, words in (  # of the program, of Blender
     (r"the surface is open: \d+ edges around (\d+ holes?).*",
-     r"the surface is open (\1); Mesh > Clean Up > Fill Holes, or role Cloth"),
+     r"the surface is open (\1); Mesh > Clean Up > Fill Holes, Rebuild surface, or role Cloth"),
     (r"the surface intersects itself: (\d+ pairs? of triangles).*",
-     r"the surface intersects itself (\1); separate the parts, or apply a Remesh modifier"),
+     r"the surface intersects itself (\1); Rebuild surface, or apply a Remesh modifier"),
     (r"(the mesh is planar|the surface is a sheet): .*", r"\1; role Cloth, or apply a Solidify modifier"),
+    (r"(encloses almost no volume): .*", r"\1, too little to rebuild; role Cloth, or Mesh > Clean Up > Fill Holes"),
     (r"set material\.young = (\S+)", r"set Stiffness to \1 Pa"),
     (r"set body\.\S+\.scale = (\S+)", r"scale the object by \1"),
 )]

@@ -43,6 +43,8 @@ def outcome(run):
         with open(os.path.join(run.folder, "scene.toml"), encoding="utf-8") as scene:
             text = messages.error_text(run.message(), scene.read(), export.read_job(run.folder).get("objects", {}))
         return "ERROR", text or f"aspic ended with code {code}"
+    if run.is_preparing():
+        return "WARNING", "Stopped before the first frame"
     try:
         frames = results.apply(run.folder)
     except (sample.Refused, OSError) as error:
@@ -78,6 +80,8 @@ def poll():
     if active.is_running():
         job = export.read_job(active.folder)
         scene.aspic.status = f"Step {active.step} of {export.steps_of(job)}"
+        if active.is_preparing():
+            scene.aspic.status = "Rebuilding surfaces"
         scene.aspic.progress = 100 * active.step / max(export.steps_of(job), 1)
         show_frames(active)
         redraw(f"Aspic: {scene.aspic.status}. Esc stops and keeps the frames")
@@ -88,12 +92,12 @@ def poll():
     return None
 
 
-def launch(operator, context, folder, arguments):
-    """Starts a run; without windows, where timers never fire, waits for its end."""
+def launch(operator, context, folder, arguments, preparation=()):
+    """Starts a run after its preparation; without windows, where timers never fire, waits for its end."""
     global active
     context.scene.aspic.status = ""
     try:
-        active = process.Run(program(context), folder, arguments)
+        active = process.Run(program(context), folder, arguments, preparation)
     except OSError as error:
         operator.report({"ERROR"}, str(error))
         return {"CANCELLED"}
@@ -129,7 +133,8 @@ class ASPIC_OT_bake(Idle, bpy.types.Operator):
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         run = results.run_folder(folder)
-        return launch(self, context, folder, [os.path.join(folder, "scene.toml"), "--out", run, "--force"])
+        arguments = [os.path.join(folder, "scene.toml"), "--out", run, "--force"]
+        return launch(self, context, folder, arguments, export.rebuilds(folder))
 
 
 class ASPIC_OT_continue(Idle, bpy.types.Operator):

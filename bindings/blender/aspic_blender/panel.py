@@ -30,6 +30,7 @@ def draw_body(layout, ob):
         row.prop(settings, "young_max")
         layout.prop(settings, "scale")
     layout.prop(settings, "resolution")
+    layout.prop(settings, "rebuild")
     layout.prop(settings, "friction")
 
 

@@ -125,6 +125,10 @@ class Sampled:
         a, b, c = (self.rest[self.triangles[:, i]] for i in range(3))
         return float(np.median(np.linalg.norm(np.concatenate([b - a, c - b, a - c]), axis=1)))
 
+    def mesh_size(self):
+        """Edge length of tets [m]."""
+        return self.ob.aspic.resolution * self.median_edge()
+
 
 class Wind:
     """A wind field over the frames of the scene: velocities of the air [m/s]."""

@@ -298,7 +298,7 @@ def panel_draws_all_roles():
         panel.draw(SimpleNamespace(layout=layout), bpy.context)
         return layout.drawn
 
-    check({"young", "pin_group", "aspic.bake", "Baked 3 frames"} <= set(drawn()))
+    check({"young", "pin_group", "rebuild", "aspic.bake", "Baked 3 frames"} <= set(drawn()))
     ob.aspic.stiffness_group = "Group"
     check({"young_min", "young_max", "scale"} <= set(drawn()) and "young" not in drawn())
     ob.aspic.role = "OBSTACLE"
@@ -609,6 +609,41 @@ def large_objects_are_warned_of():
         bake(2)
         status = bpy.context.scene.aspic.status
         check(status.splitlines()[-1].startswith(expected), status)
+
+
+@scenario
+def suzanne_is_rebuilt():
+    """She is open and intersects herself."""
+    bpy.ops.mesh.primitive_monkey_add(size=0.2)
+    ob = bpy.context.object
+    ob.aspic.role, ob.aspic.resolution = "BODY", 3
+    ob.aspic.pin_group = paint(ob, "pin", lambda x: float(x.y > 0.05))
+    for frame, z in ((1, 0), (4, 0.02)):
+        ob.location.z = z
+        ob.keyframe_insert("location", frame=frame)
+    check("Rebuild surface" in refused(bpy.ops.aspic.bake))
+    ob.aspic.rebuild = True
+    rest, free = shown(ob, 1), shown(ob, 4)
+    folder = bake(4)
+    check(len(ob.data.uv_layers) == 1 and simulated(folder, "Suzanne").shape == (4, len(rest), 3))
+    check(np.abs(simulated(folder, "Suzanne")[0] - rest).max() < SINGLE)
+    check_shows(ob, folder, "Suzanne")
+    pinned = rest[:, 1] > 0.07
+    error = np.abs(shown(ob, 4) - free)[pinned].max()
+    check(pinned.any() and error < 0.002, "pins differ by", error)
+    check(export.rebuilds(folder) == [])
+    export.write(bpy.context)
+    check(export.rebuilds(folder) == [], "an equal surface is rebuilt")
+    ob.data.vertices[0].co.x *= 1.01
+    export.write(bpy.context)
+    check(len(export.rebuilds(folder)) == 1, "an edited surface is not rebuilt")
+    bpy.context.scene.frame_end = 5
+    export.write(bpy.context)
+    check(not results.can_continue(folder), "continues the run of another surface")
+    run = process.Run(operators.program(bpy.context), folder, ["scene.toml"], export.rebuilds(folder))
+    check(run.is_running() and run.is_preparing())
+    run.cancel()
+    check(operators.outcome(run) == ("WARNING", "Stopped before the first frame"))
 
 
 @scenario
