@@ -106,8 +106,11 @@ class Sampled:
         if len(x) != len(self.rest):
             raise Refused(f"{self.ob.name} has {len(x)} vertices in frame {frame} and {len(self.rest)} at the start; "
                           "its modifiers must keep the vertices")
-        if not np.isfinite(x).all():
-            raise Refused(f"{self.ob.name} has coordinates that are not finite in frame {frame}")
+        bad = np.flatnonzero(~np.isfinite(x).all(axis=1))
+        if len(bad):
+            raise Refused(f"{self.ob.name}: {len(bad)} of {len(x)} vertices have coordinates that are not finite in frame "
+                          f"{frame}; to select the first in object mode, enter in the Python Console: "
+                          f"bpy.data.objects[{self.ob.name!r}].data.vertices[{bad[0]}].select = True")
         self.frames.append(x.astype(np.float32))
         self.matrices.append(matrix)
 

@@ -564,6 +564,10 @@ def mistakes_are_explained():
         check("/no/such/aspic" in refused(bpy.ops.aspic.bake))
     finally:
         os.environ.pop("ASPIC_PROGRAM") if program is None else os.environ.update(ASPIC_PROGRAM=program)
+    x, ob.data.vertices[7].co.y = ob.data.vertices[7].co.y, math.nan
+    text = refused(bpy.ops.aspic.bake)
+    check("Ball: 1 of 42 vertices" in text and "objects['Ball'].data.vertices[7].select" in text, text)
+    ob.data.vertices[7].co.y = x
     bpy.ops.mesh.primitive_plane_add(size=0.2)
     bpy.context.object.aspic.role = "BODY"
     text = refused(bpy.ops.aspic.bake)
