@@ -1,11 +1,12 @@
 """Writes a scene of Blender as a scene of Aspic, with all that is needed to read the results."""
+import hashlib
 import json
 import os
 import re
 
 import numpy as np
 
-from . import files, sample
+from . import files, messages, sample
 
 JOB = "bake.json"
 
@@ -61,7 +62,10 @@ def body_text(name, sampled, folder, preroll, fps):
     else:
         keys["material"] = {"model": settings.model, "poisson": settings.poisson, "density": settings.density,
                             "young": {"file": mesh, "name": "young"} if "young" in attributes else settings.young}
-        keys["mesh_size"] = settings.resolution * sampled.median_edge()
+        if settings.rebuild:
+            keys.update(mesh=name + ".mesh", skin=mesh)
+        else:
+            keys["mesh_size"] = sampled.mesh_size()
     text = files.table("[body]", keys)
     if "pin" not in attributes:
         return text
@@ -129,18 +133,45 @@ def write(context):
         text += obstacle_text(name, each, folder, preroll, fps)
     with open(os.path.join(folder, "scene.toml"), "w", encoding="utf-8") as file:
         file.write(text)
-    write_job(folder, scene, named[:len(bodies)], preroll)
+    write_job(folder, scene, named, preroll)
     return folder
 
 
-def write_job(folder, scene, bodies, preroll):
+def rebuilds(folder):
+    """Commands of the program that fill the rebuilt surfaces of the job, without those of an earlier bake."""
+    commands = []
+    for body in read_job(folder)["bodies"]:
+        path = os.path.join(folder, body["name"])
+        if body.get("rebuild") and not os.path.exists(path + ".mesh"):
+            commands.append(["mesh", path + ".ply", "--rebuild", "--size", repr(body["size"]), "-o", path + ".mesh",
+                             "--quiet"])
+    return commands
+
+
+def fingerprint(sampled):
+    """Changes with the rebuilt surface; empty for bodies without one."""
+    if sampled.ob.aspic.role != "BODY" or not sampled.ob.aspic.rebuild:
+        return ""
+    content = sampled.rest.tobytes() + sampled.triangles.tobytes() + repr(sampled.mesh_size()).encode()
+    return hashlib.sha256(content).hexdigest()
+
+
+def write_job(folder, scene, named, preroll):
     """What is needed to read the results later, even in another session."""
     job = {"frame_start": scene.frame_start, "frames": scene.frame_end - scene.frame_start + 1, "preroll": preroll,
-           "substeps": scene.aspic.substeps, "unit": scene.unit_settings.scale_length, "bodies": []}
+           "substeps": scene.aspic.substeps, "unit": scene.unit_settings.scale_length, "bodies": [],
+           "objects": {name: each.ob.name for name, each in named}}
+    bodies = [(name, each) for name, each in named if each.ob.aspic.role in sample.SIMULATED]
+    large = [messages.large(each.ob, each.size(), job["unit"]) for _, each in bodies]
+    job["warnings"] = [text for text in large if text]
+    earlier = {body["name"]: body.get("rebuild") for body in (read_job(folder) or {"bodies": []})["bodies"]}
     for name, each in bodies:
+        rebuild, path = fingerprint(each), os.path.join(folder, name + ".mesh")
+        if rebuild != earlier.get(name) and os.path.exists(path):
+            os.remove(path)
         np.save(os.path.join(folder, name + ".matrices.npy"), each.matrices)
         job["bodies"].append({"object": each.ob.name, "name": name, "vertices": len(each.rest),
-                              "triangles": len(each.triangles)})
+                              "triangles": len(each.triangles), "rebuild": rebuild, "size": each.mesh_size()})
     with open(os.path.join(folder, JOB), "w", encoding="utf-8") as file:
         json.dump(job, file, indent=1)
 

@@ -6,7 +6,7 @@ import time
 import bpy
 from bpy.app.handlers import persistent
 
-from . import export, process, results, sample, settings
+from . import export, messages, process, results, sample, settings
 
 active = None  # the simulation that runs
 
@@ -40,17 +40,23 @@ def outcome(run):
     """Applies the results of a run that has ended. Returns kind of report and text."""
     code = run.wait()
     if code not in (process.DONE, process.NOT_CONVERGED, process.INTERRUPTED):
-        return "ERROR", run.message() or f"aspic ended with code {code}"
+        with open(os.path.join(run.folder, "scene.toml"), encoding="utf-8") as scene:
+            text = messages.error_text(run.message(), scene.read(), export.read_job(run.folder).get("objects", {}))
+        return "ERROR", text or f"aspic ended with code {code}"
+    if run.is_preparing():
+        return "WARNING", "Stopped before the first frame"
     try:
         frames = results.apply(run.folder)
     except (sample.Refused, OSError) as error:
         return "ERROR", str(error)
     text = f"{frames} frames"
+    count, lines = messages.note_lines(run.lines(), export.read_job(run.folder))
+    warnings = f", {count} warning{'s' if count > 1 else ''}:\n" + "\n".join(lines) if count else ""
     if code == process.INTERRUPTED:
-        return "WARNING", f"Stopped after {text}; Continue resumes"
+        return "WARNING", f"Stopped after {text}; Continue resumes{warnings}"
     if code == process.NOT_CONVERGED:
-        return "WARNING", f"{text}; some steps did not converge, see the report"
-    return "INFO", f"Baked {text}"
+        return "WARNING", f"{text}; some steps did not converge, see the report{warnings}"
+    return "WARNING" if count else "INFO", f"Baked {text}{warnings}"
 
 
 def show_frames(run):
@@ -74,6 +80,8 @@ def poll():
     if active.is_running():
         job = export.read_job(active.folder)
         scene.aspic.status = f"Step {active.step} of {export.steps_of(job)}"
+        if active.is_preparing():
+            scene.aspic.status = "Rebuilding surfaces"
         scene.aspic.progress = 100 * active.step / max(export.steps_of(job), 1)
         show_frames(active)
         redraw(f"Aspic: {scene.aspic.status}. Esc stops and keeps the frames")
@@ -84,16 +92,18 @@ def poll():
     return None
 
 
-def launch(operator, context, folder, arguments):
-    """Starts a run; without windows, where timers never fire, waits for its end."""
+def launch(operator, context, folder, arguments, preparation=()):
+    """Starts a run after its preparation; without windows, where timers never fire, waits for its end."""
     global active
     context.scene.aspic.status = ""
     try:
-        active = process.Run(program(context), folder, arguments)
+        active = process.Run(program(context), folder, arguments, preparation)
     except OSError as error:
         operator.report({"ERROR"}, str(error))
         return {"CANCELLED"}
     if not bpy.app.background:
+        for text in export.read_job(folder).get("warnings", []):
+            operator.report({"WARNING"}, text)
         bpy.app.timers.register(poll, first_interval=0.2)
         return {"FINISHED"}
     kind, text = outcome(active)
@@ -123,7 +133,8 @@ class ASPIC_OT_bake(Idle, bpy.types.Operator):
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         run = results.run_folder(folder)
-        return launch(self, context, folder, [os.path.join(folder, "scene.toml"), "--out", run, "--force"])
+        arguments = [os.path.join(folder, "scene.toml"), "--out", run, "--force"]
+        return launch(self, context, folder, arguments, export.rebuilds(folder))
 
 
 class ASPIC_OT_continue(Idle, bpy.types.Operator):

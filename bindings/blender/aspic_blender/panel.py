@@ -1,4 +1,6 @@
 """The panel in the sidebar of the 3D view."""
+import textwrap
+
 import bpy
 
 from . import operators
@@ -28,6 +30,7 @@ def draw_body(layout, ob):
         row.prop(settings, "young_max")
         layout.prop(settings, "scale")
     layout.prop(settings, "resolution")
+    layout.prop(settings, "rebuild")
     layout.prop(settings, "friction")
 
 
@@ -62,8 +65,10 @@ class ASPIC_PT_sidebar(bpy.types.Panel):
         row.operator("aspic.remove")
         if operators.active:
             layout.prop(scene.aspic, "progress", slider=True)
+        width = max(20, context.region.width // 7) if context.region else 60  # characters
         for line in scene.aspic.status.splitlines():
-            layout.label(text=line)
+            for part in textwrap.wrap(line, width):
+                layout.label(text=part)
 
 
 CLASSES = (ASPIC_PT_sidebar,)

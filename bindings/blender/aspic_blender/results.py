@@ -22,7 +22,7 @@ def steps_done(folder):
 
 def can_continue(folder):
     job = export.read_job(folder)
-    return job is not None and 0 <= steps_done(folder) < export.steps_of(job)
+    return job is not None and 0 <= steps_done(folder) < export.steps_of(job) and not export.rebuilds(folder)
 
 
 def local_frames(folder, job, body):

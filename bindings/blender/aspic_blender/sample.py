@@ -106,20 +106,31 @@ class Sampled:
         if len(x) != len(self.rest):
             raise Refused(f"{self.ob.name} has {len(x)} vertices in frame {frame} and {len(self.rest)} at the start; "
                           "its modifiers must keep the vertices")
-        if not np.isfinite(x).all():
-            raise Refused(f"{self.ob.name} has coordinates that are not finite in frame {frame}")
+        bad = np.flatnonzero(~np.isfinite(x).all(axis=1))
+        if len(bad):
+            raise Refused(f"{self.ob.name}: {len(bad)} of {len(x)} vertices have coordinates that are not finite in frame "
+                          f"{frame}; to select the first in object mode, enter in the Python Console: "
+                          f"bpy.data.objects[{self.ob.name!r}].data.vertices[{bad[0]}].select = True")
         self.frames.append(x.astype(np.float32))
         self.matrices.append(matrix)
 
     def finish(self):
         self.frames, self.matrices = np.array(self.frames), np.array(self.matrices)
-        size = np.ptp(self.rest, axis=0).max()
+        size = self.size()
         self.is_moving = bool(np.abs(self.frames - self.frames[0]).max() > 1e-6 * size)
         self.is_posed = bool(np.abs(self.frames[0] - self.rest).max() > 1e-6 * size)
+
+    def size(self):
+        """Largest side of the bounding box [m]."""
+        return float(np.ptp(self.rest, axis=0).max())
 
     def median_edge(self):
         a, b, c = (self.rest[self.triangles[:, i]] for i in range(3))
         return float(np.median(np.linalg.norm(np.concatenate([b - a, c - b, a - c]), axis=1)))
+
+    def mesh_size(self):
+        """Edge length of tets [m]."""
+        return self.ob.aspic.resolution * self.median_edge()
 
 
 class Wind:

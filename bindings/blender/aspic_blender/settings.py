@@ -45,6 +45,8 @@ class ObjectSettings(bpy.types.PropertyGroup):
                                              ("LOG", "Logarithmic", "Equal factors for equal steps of weight")])
     resolution: FloatProperty(name="Element size", default=1, min=0.2, max=20,
                               description="Edge length of the tets, in median edges of the mesh")
+    rebuild: BoolProperty(name="Rebuild surface", default=False,
+                          description="Fill a closed surface around the mesh, for meshes with holes or overlaps. The mesh follows it")
     fabric: EnumProperty(name="Fabric", items=[(k, v[0], f"{v[2]:g} N/m, {v[4]:g} kg/m^2") for k, v in FABRICS.items()],
                          update=apply_fabric, default="cotton", description="Sets the values below")
     thickness: FloatProperty(name="Thickness [m]", default=5e-4, min=1e-6, soft_max=0.01, precision=5,

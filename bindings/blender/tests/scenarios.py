@@ -15,7 +15,7 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
 import aspic_blender  # noqa: E402
-from aspic_blender import export, files, operators, process, results, sample  # noqa: E402
+from aspic_blender import export, files, messages, operators, process, results, sample  # noqa: E402
 
 SCENARIOS = []
 SINGLE = 1e-6  # of the size of the scene: round-off of caches
@@ -298,7 +298,7 @@ def panel_draws_all_roles():
         panel.draw(SimpleNamespace(layout=layout), bpy.context)
         return layout.drawn
 
-    check({"young", "pin_group", "aspic.bake", "Baked 3 frames"} <= set(drawn()))
+    check({"young", "pin_group", "rebuild", "aspic.bake", "Baked 3 frames"} <= set(drawn()))
     ob.aspic.stiffness_group = "Group"
     check({"young_min", "young_max", "scale"} <= set(drawn()) and "young" not in drawn())
     ob.aspic.role = "OBSTACLE"
@@ -564,10 +564,90 @@ def mistakes_are_explained():
         check("/no/such/aspic" in refused(bpy.ops.aspic.bake))
     finally:
         os.environ.pop("ASPIC_PROGRAM") if program is None else os.environ.update(ASPIC_PROGRAM=program)
+    x, ob.data.vertices[7].co.y = ob.data.vertices[7].co.y, math.nan
+    text = refused(bpy.ops.aspic.bake)
+    check("Ball: 1 of 42 vertices" in text and "objects['Ball'].data.vertices[7].select" in text, text)
+    ob.data.vertices[7].co.y = x
     bpy.ops.mesh.primitive_plane_add(size=0.2)
     bpy.context.object.aspic.role = "BODY"
     text = refused(bpy.ops.aspic.bake)
-    check("Plane" in text and "scene.toml" in text, text)
+    check(text == "Error: Plane: the mesh is planar; role Cloth, or apply a Solidify modifier\n", text)
+
+
+@scenario
+def errors_have_words_of_blender():
+    ob = ball(name="Open.001")
+    x, faces = [tuple(v.co) for v in ob.data.vertices], [tuple(f.vertices) for f in ob.data.polygons]
+    ob.data.clear_geometry()
+    ob.data.from_pydata(x, [], faces[1:])
+    text = refused(bpy.ops.aspic.bake)
+    check(text.startswith("Error: Open.001: the surface is open (1 hole); Mesh > Clean Up > Fill Holes"), text)
+    ob.data.clear_geometry()
+    ob.data.from_pydata(x + [(v[0] + 0.1, v[1], v[2]) for v in x], [],
+                        faces + [tuple(v + len(x) for v in f) for f in faces])
+    text = refused(bpy.ops.aspic.bake)
+    check(text.startswith("Error: Open.001: the surface intersects itself (") and "Remesh" in text, text)
+    scene = '[time]\nstep = 1\n[body]\nname = "Open_001"\nfriction = 2\n'
+    for place, expected in (("5:1", "Open.001: a value"), ("2:1", "a value")):
+        text = messages.error_text(f"error: C:\\my files\\scene.toml:{place}: a value", scene, {"Open_001": "Open.001"})
+        check(text == expected, text)
+
+
+@scenario
+def notes_are_warnings():
+    ob = ball(name="My ball", young=5)
+    ob.aspic.pin_group = paint(ob, "pin", lambda x: float(x.z > 0.05))
+    bake(2)
+    lines = bpy.context.scene.aspic.status.splitlines()
+    check(len(lines) == 2 and lines[0] == "Baked 2 frames, 1 warning:", lines)
+    check(lines[1].startswith("My ball: its weight crushes it"), lines)
+
+
+@scenario
+def large_objects_are_warned_of():
+    ob = ball(at=(0, 0, 0))
+    for unit, scale, expected in ((1, 100, "Ball is 20 m large;"), (0.1, 1000, "Ball is 20 m large, Unit Scale is 0.1;"),
+                                  (0.01, 100, "Baked 2 frames")):
+        bpy.context.scene.unit_settings.scale_length = unit
+        ob.scale = (scale, scale, scale)
+        bake(2)
+        status = bpy.context.scene.aspic.status
+        check(status.splitlines()[-1].startswith(expected), status)
+
+
+@scenario
+def suzanne_is_rebuilt():
+    """She is open and intersects herself."""
+    bpy.ops.mesh.primitive_monkey_add(size=0.2)
+    ob = bpy.context.object
+    ob.aspic.role, ob.aspic.resolution = "BODY", 3
+    ob.aspic.pin_group = paint(ob, "pin", lambda x: float(x.y > 0.05))
+    for frame, z in ((1, 0), (4, 0.02)):
+        ob.location.z = z
+        ob.keyframe_insert("location", frame=frame)
+    check("Rebuild surface" in refused(bpy.ops.aspic.bake))
+    ob.aspic.rebuild = True
+    rest, free = shown(ob, 1), shown(ob, 4)
+    folder = bake(4)
+    check(len(ob.data.uv_layers) == 1 and simulated(folder, "Suzanne").shape == (4, len(rest), 3))
+    check(np.abs(simulated(folder, "Suzanne")[0] - rest).max() < SINGLE)
+    check_shows(ob, folder, "Suzanne")
+    pinned = rest[:, 1] > 0.07
+    error = np.abs(shown(ob, 4) - free)[pinned].max()
+    check(pinned.any() and error < 0.002, "pins differ by", error)
+    check(export.rebuilds(folder) == [])
+    export.write(bpy.context)
+    check(export.rebuilds(folder) == [], "an equal surface is rebuilt")
+    ob.data.vertices[0].co.x *= 1.01
+    export.write(bpy.context)
+    check(len(export.rebuilds(folder)) == 1, "an edited surface is not rebuilt")
+    bpy.context.scene.frame_end = 5
+    export.write(bpy.context)
+    check(not results.can_continue(folder), "continues the run of another surface")
+    run = process.Run(operators.program(bpy.context), folder, ["scene.toml"], export.rebuilds(folder))
+    check(run.is_running() and run.is_preparing())
+    run.cancel()
+    check(operators.outcome(run) == ("WARNING", "Stopped before the first frame"))
 
 
 @scenario
