@@ -6,4 +6,5 @@
 #include "mesh/numbering.h"
 #include "mesh/surface.h"
 #include "mesh/tet_mesh.h"
+#include "mesh/triangle_uv.h"
 #include "mesh/vertices.h"
